@@ -21,7 +21,7 @@ constexpr Nanoseconds kMaxAge = std::chrono::hours(10 * 365 * 24);
 
 }  // namespace
 
-void AlertJudge::change(const std::vector<AlertConfig>& alerts) {
+void Judge::change(const std::vector<AlertConfig>& alerts) {
   std::vector<Alert> next;
   for (const AlertConfig& config : alerts) {
     const auto before = std::ranges::find_if(alerts_, [&](const Alert& alert) {
@@ -33,8 +33,8 @@ void AlertJudge::change(const std::vector<AlertConfig>& alerts) {
   alerts_ = std::move(next);
 }
 
-void AlertJudge::resume(const std::vector<AlertOn>& on, const Instant& now) {
-  for (const AlertOn& one : on) {
+void Judge::resume(const std::vector<Active>& on, const Instant& now) {
+  for (const Active& one : on) {
     const bool is_of_sensor = one.when == AlertCondition::kSensorSilent;
     for (Alert& alert : alerts_) {
       if (alert.config.name != one.alert || alert.config.when != one.when || one.subject.empty() == is_of_sensor)
@@ -46,8 +46,8 @@ void AlertJudge::resume(const std::vector<AlertOn>& on, const Instant& now) {
   }
 }
 
-std::vector<AlertOn> AlertJudge::on() const {
-  std::vector<AlertOn> all;
+std::vector<Active> Judge::on() const {
+  std::vector<Active> all;
   for (const Alert& alert : alerts_) {
     for (const auto& [subject, progress] : alert.of_subject) {
       if (progress.has_begun) all.push_back({alert.config.name, alert.config.when, subject, progress.begun_utc});
@@ -56,7 +56,7 @@ std::vector<AlertOn> AlertJudge::on() const {
   return all;
 }
 
-std::vector<AlertJudge::Subject> AlertJudge::subjects_of(const AlertConfig& alert, const wire::Sensors& status) const {
+std::vector<Judge::Subject> Judge::subjects_of(const AlertConfig& alert, const wire::Sensors& status) const {
   switch (alert.when) {
     case AlertCondition::kSensorSilent: {
       std::vector<Subject> subjects;
@@ -105,12 +105,11 @@ std::vector<AlertJudge::Subject> AlertJudge::subjects_of(const AlertConfig& aler
   return {};
 }
 
-std::vector<AlertNews> AlertJudge::judge(const wire::Sensors& status, std::optional<std::uint64_t> frames,
-                                         const Instant& now) {
+std::vector<News> Judge::judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now) {
   has_new_frame_ = frames != frames_;
   frames_ = frames;
 
-  std::vector<AlertNews> all;
+  std::vector<News> all;
   for (Alert& alert : alerts_) {
     const std::vector<Subject> subjects = subjects_of(alert.config, status);
     if (alert.config.when == AlertCondition::kSensorSilent) {  // sensors come and go with the configuration
@@ -128,11 +127,11 @@ std::vector<AlertNews> AlertJudge::judge(const wire::Sensors& status, std::optio
       const double for_s = seconds(now.mono - *progress.differs_since);
       if (for_s < (progress.has_begun ? alert.config.end_after_s : alert.config.after_s)) continue;
 
-      AlertNews news{.alert = alert.config.name,
-                     .has_begun = subject.holds,
-                     .time = now.utc,
-                     .command = alert.config.command,
-                     .webhook = alert.config.webhook};
+      News news{.alert = alert.config.name,
+                .has_begun = subject.holds,
+                .time = now.utc,
+                .command = alert.config.command,
+                .webhook = alert.config.webhook};
       if (subject.holds) {
         news.message = subject.begins;
         if (for_s > 0.0) news.message += fmt::format(" (for {})", settings::duration_text(for_s));

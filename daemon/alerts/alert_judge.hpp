@@ -17,25 +17,25 @@ namespace yuragi::daemon::alerts {
 
 /// Decides when alerts begin and end, from the daemon's own state. The beginning of each is reported once, after it
 /// has held for AlertConfig::after_s, and its end once. Pure: time is a parameter. Thread-safe: no.
-class AlertJudge {
+class Judge {
  public:
-  explicit AlertJudge(const std::vector<settings::AlertConfig>& alerts) { change(alerts); }
+  explicit Judge(const std::vector<settings::AlertConfig>& alerts) { change(alerts); }
 
   /// Replaces the alerts. One with the same name and subject continues; the end of a removed one is not reported.
   void change(const std::vector<settings::AlertConfig>& alerts);
 
   /// Continues alerts that were on in an earlier process. Those that are no longer configured are ignored.
-  void resume(const std::vector<AlertOn>& on, const Instant& now);
+  void resume(const std::vector<Active>& on, const Instant& now);
 
   /// Returns those that have begun and not ended.
-  std::vector<AlertOn> on() const;
+  std::vector<Active> on() const;
 
   /// Longer sentences are cut.
   static constexpr std::size_t kMaxMessage_bytes = 500;
 
   /// Returns what has begun or ended since the last call. `frames`: how many the animation has made; nullopt: no
   /// scenes.
-  std::vector<AlertNews> judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
+  std::vector<News> judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
  private:
   /// What an alert is about: a sensor, the wind, the disk, the animation.

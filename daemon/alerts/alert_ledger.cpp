@@ -13,14 +13,14 @@
 
 namespace yuragi::daemon::alerts {
 
-AlertLedger::AlertLedger(std::filesystem::path file)
+Ledger::Ledger(std::filesystem::path file)
     : file_(std::move(file)),
       record_(read()),
       thread_([this](const std::stop_token& stop) { contain("keeping alerts on the disk", [&] { work(stop); }); }) {}
 
-AlertLedger::~AlertLedger() = default;
+Ledger::~Ledger() = default;
 
-AlertRecord AlertLedger::read() const {
+Record Ledger::read() const {
   std::error_code error;
   if (!std::filesystem::exists(file_, error) && !error) return {};
   std::string text;
@@ -38,25 +38,25 @@ AlertRecord AlertLedger::read() const {
   return {};
 }
 
-AlertRecord AlertLedger::record() const {
+Record Ledger::record() const {
   const std::lock_guard lock(mutex_);
   return record_;
 }
 
-void AlertLedger::set(std::vector<AlertOn> on, const std::vector<AlertNews>& news) {
+void Ledger::set(std::vector<Active> on, const std::vector<News>& news) {
   const std::lock_guard lock(mutex_);
   if (news.empty() && on == record_.on) return;
   record_.on = std::move(on);
-  for (const AlertNews& one : news) {
-    const AlertNews kept{.alert = one.alert, .has_begun = one.has_begun, .message = one.message, .time = one.time};
-    if (!one.command.empty()) record_.undelivered.push_back({AlertWay::kCommand, kept});
-    if (!one.webhook.is_empty()) record_.undelivered.push_back({AlertWay::kWebhook, kept});
+  for (const News& one : news) {
+    const News kept{.alert = one.alert, .has_begun = one.has_begun, .message = one.message, .time = one.time};
+    if (!one.command.empty()) record_.undelivered.push_back({Channel::kCommand, kept});
+    if (!one.webhook.is_empty()) record_.undelivered.push_back({Channel::kWebhook, kept});
   }
   has_changed_ = true;
   changed_.notify_one();
 }
 
-void AlertLedger::settle(AlertWay way, const AlertNews& news) {
+void Ledger::settle(Channel way, const News& news) {
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find_if(record_.undelivered, [&](const UndeliveredNews& one) {
     return one.way == way && one.news.alert == news.alert && one.news.has_begun == news.has_begun &&
@@ -68,19 +68,19 @@ void AlertLedger::settle(AlertWay way, const AlertNews& news) {
   changed_.notify_one();
 }
 
-void AlertLedger::work(const std::stop_token& stop) {
+void Ledger::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   // Also true once after a stop, if something has changed.
   while (changed_.wait(lock, stop, [this] { return has_changed_; })) {
     has_changed_ = false;
-    const AlertRecord record = record_;
+    const Record record = record_;
     lock.unlock();
     save(record);
     lock.lock();
   }
 }
 
-void AlertLedger::save(const AlertRecord& record) {
+void Ledger::save(const Record& record) {
   std::string failure;
   const bool is_empty = record.on.empty() && record.undelivered.empty();
   try {

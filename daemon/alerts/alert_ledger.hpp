@@ -16,30 +16,30 @@ namespace yuragi::daemon::alerts {
 /// Keeps in a file which alerts are on and what is undelivered, so that both outlive the process. A thread of its own
 /// writes the file whole, or removes it if there is nothing to keep; the caller never waits for the disk. Failures are
 /// logged, and cost only the saving. Thread-safe: yes. The constructor reads the file, the destructor writes it.
-class AlertLedger {
+class Ledger {
  public:
-  explicit AlertLedger(std::filesystem::path file);
-  ~AlertLedger();
-  AlertLedger(const AlertLedger&) = delete;
-  AlertLedger& operator=(const AlertLedger&) = delete;
+  explicit Ledger(std::filesystem::path file);
+  ~Ledger();
+  Ledger(const Ledger&) = delete;
+  Ledger& operator=(const Ledger&) = delete;
 
-  AlertRecord record() const;
+  Record record() const;
 
   /// Sets which alerts are on, and adds the news to the undelivered ones, in one piece.
-  void set(std::vector<AlertOn> on, const std::vector<AlertNews>& news);
+  void set(std::vector<Active> on, const std::vector<News>& news);
 
   /// Removes news that was delivered by this way, or will never be.
-  void settle(AlertWay way, const AlertNews& news);
+  void settle(Channel way, const News& news);
 
  private:
-  AlertRecord read() const;
+  Record read() const;
   void work(const std::stop_token& stop);
-  void save(const AlertRecord& record);
+  void save(const Record& record);
 
   std::filesystem::path file_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  AlertRecord record_;
+  Record record_;
   bool has_changed_ = false;
   std::string failure_;  ///< the last, which is logged once; only on the thread
   std::jthread thread_;

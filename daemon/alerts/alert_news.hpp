@@ -8,7 +8,7 @@
 namespace yuragi::daemon::alerts {
 
 /// The beginning or end of an alert, and where to report it.
-struct AlertNews {
+struct News {
   std::string alert = {};    ///< its name
   bool has_begun = false;    ///< false: it has ended
   std::string message = {};  ///< a sentence

@@ -41,9 +41,9 @@ json number_of(UtcTime time) {
 
 }  // namespace
 
-std::string text_of(const AlertRecord& record) {
+std::string text_of(const Record& record) {
   json on = json::array();
-  for (const AlertOn& one : record.on) {
+  for (const Active& one : record.on) {
     on.push_back({{"alert", one.alert},
                   {"when", settings::kAlertConditionNames.at(static_cast<std::size_t>(one.when))},
                   {"subject", one.subject},
@@ -60,8 +60,8 @@ std::string text_of(const AlertRecord& record) {
   return json_text(json{{"on", on}, {"undelivered", undelivered}}, 1) + '\n';
 }
 
-Result<AlertRecord, Failure> parse_alert_record(std::string_view text) {
-  AlertRecord record;
+Result<Record, Failure> parse_alert_record(std::string_view text) {
+  Record record;
   try {
     const json all = json::parse(text);
     for (const json& one : all.at("on").get_ref<const json::array_t&>()) {
@@ -72,7 +72,7 @@ Result<AlertRecord, Failure> parse_alert_record(std::string_view text) {
            .begun = time_of(one)});
     }
     for (const json& one : all.at("undelivered").get_ref<const json::array_t&>()) {
-      record.undelivered.push_back({.way = static_cast<AlertWay>(choice_of(one, "way", kWayNames)),
+      record.undelivered.push_back({.way = static_cast<Channel>(choice_of(one, "way", kWayNames)),
                                     .news = {.alert = one.at("alert").get<std::string>(),
                                              .has_begun = choice_of(one, "state", kStateNames) == 0,
                                              .message = one.at("message").get<std::string>(),

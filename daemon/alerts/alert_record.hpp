@@ -13,27 +13,27 @@
 namespace yuragi::daemon::alerts {
 
 /// An alert that has begun and has not ended.
-struct AlertOn {
+struct Active {
   std::string alert = {};  ///< its name
   settings::AlertCondition when = settings::AlertCondition::kSensorSilent;
   std::string subject = {};  ///< the sensor's name; empty for the other conditions
   UtcTime begun{};
 
-  bool operator==(const AlertOn&) const = default;
+  bool operator==(const Active&) const = default;
 };
 
 /// How news is delivered.
-enum class AlertWay : std::uint8_t { kCommand, kWebhook };
+enum class Channel : std::uint8_t { kCommand, kWebhook };
 
 /// News that one way has not delivered. Its command and webhook are empty: they come from the configuration.
 struct UndeliveredNews {
-  AlertWay way = AlertWay::kCommand;
-  AlertNews news = {};
+  Channel way = Channel::kCommand;
+  News news = {};
 };
 
 /// The state of alerts that outlives the daemon.
-struct AlertRecord {
-  std::vector<AlertOn> on = {};
+struct Record {
+  std::vector<Active> on = {};
   std::vector<UndeliveredNews> undelivered = {};  ///< oldest first
 };
 
@@ -41,9 +41,9 @@ struct AlertRecord {
 inline constexpr std::size_t kMaxAlertRecord_bytes = 16U << 20U;
 
 /// Returns the record as JSON. Pure.
-std::string text_of(const AlertRecord& record);
+std::string text_of(const Record& record);
 
 /// Reads what text_of() returned; the text is not trusted. Fails if anything in it is invalid. Pure.
-Result<AlertRecord, Failure> parse_alert_record(std::string_view text);
+Result<Record, Failure> parse_alert_record(std::string_view text);
 
 }  // namespace yuragi::daemon::alerts

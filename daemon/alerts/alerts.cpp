@@ -45,7 +45,7 @@ void log_output(std::string_view alert, std::string_view output) {
     spdlog::warn("alert {}: the output of its command is cut at {} KiB", alert, kMaxCommandOutput_bytes / 1024);
 }
 
-Result<void, Failure> run_and_log(const AlertNews& news, const std::stop_token& stop) {
+Result<void, Failure> run_and_log(const News& news, const std::stop_token& stop) {
   std::string output;
   auto result = run_command(news, kMaxCommand, stop, output);
   log_output(news.alert, output);
@@ -73,17 +73,17 @@ Alerts::~Alerts() {
 }
 
 void Alerts::resume(const std::vector<settings::AlertConfig>& alerts, const Instant& now) {
-  const AlertRecord record = ledger_->record();
+  const Record record = ledger_->record();
   judge_.resume(record.on, now);
   for (const auto& [way, news] : record.undelivered) {
     const settings::AlertConfig* const config = find(alerts, news.alert);
-    const bool is_command = way == AlertWay::kCommand;
+    const bool is_command = way == Channel::kCommand;
     if (config == nullptr || (is_command ? config->command.empty() : config->webhook.is_empty())) {
       spdlog::warn("alert {}: not sent, because the configuration no longer has it: {}", news.alert, news.message);
       ledger_->settle(way, news);
       continue;
     }
-    AlertNews again = news;
+    News again = news;
     again.command = config->command;
     again.webhook = config->webhook;
     push(way, again);
@@ -97,24 +97,24 @@ void Alerts::change(const std::vector<settings::AlertConfig>& alerts) {
 }
 
 void Alerts::judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now) {
-  const std::vector<AlertNews> all = judge_.judge(status, frames, now);
+  const std::vector<News> all = judge_.judge(status, frames, now);
   if (ledger_) ledger_->set(judge_.on(), all);
-  for (const AlertNews& news : all) {
+  for (const News& news : all) {
     spdlog::warn("alert {}: {}: {}", news.alert, news.has_begun ? "began" : "ended", news.message);
-    if (!news.command.empty()) push(AlertWay::kCommand, news);
-    if (!news.webhook.is_empty()) push(AlertWay::kWebhook, news);
+    if (!news.command.empty()) push(Channel::kCommand, news);
+    if (!news.webhook.is_empty()) push(Channel::kWebhook, news);
   }
 }
 
-void Alerts::push(AlertWay way, const AlertNews& news) {
-  const bool is_command = way == AlertWay::kCommand;
+void Alerts::push(Channel way, const News& news) {
+  const bool is_command = way == Channel::kCommand;
   const auto report = [is_command](std::string_view alert, std::string_view what) {
     spdlog::warn("alert {}: {}: {}", alert, is_command ? "its command" : "its webhook", what);
   };
-  const auto settle = [this, way](const AlertNews& settled) {
+  const auto settle = [this, way](const News& settled) {
     if (ledger_) ledger_->settle(way, settled);
   };
-  const auto deliver = [this, is_command](const AlertNews& one, const std::stop_token& stop) {
+  const auto deliver = [this, is_command](const News& one, const std::stop_token& stop) {
     return is_command ? run_and_log(one, stop) : post_to_webhook(one, host_, stop);
   };
   try {

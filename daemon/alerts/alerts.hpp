@@ -21,7 +21,7 @@ namespace yuragi::daemon::alerts {
 /// on its own thread. Thread-safe: no.
 class Alerts {
  public:
-  /// `host`: the name of this machine in messages. `record_file`: the file of AlertLedger, from which alerts
+  /// `host`: the name of this machine in messages. `record_file`: the file of Ledger, from which alerts
   /// continue; empty: they begin anew.
   Alerts(const std::vector<settings::AlertConfig>& alerts, std::string host, const std::filesystem::path& record_file,
          const Instant& now);
@@ -31,17 +31,17 @@ class Alerts {
 
   void change(const std::vector<settings::AlertConfig>& alerts);
 
-  /// Call it about twice a second. Does not wait. See AlertJudge::judge().
+  /// Call it about twice a second. Does not wait. See Judge::judge().
   void judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
  private:
   void resume(const std::vector<settings::AlertConfig>& alerts, const Instant& now);
-  void push(AlertWay way, const AlertNews& news);
+  void push(Channel way, const News& news);
 
-  AlertJudge judge_;
+  Judge judge_;
   std::string host_;
-  std::optional<AlertLedger> ledger_;
-  std::map<std::pair<std::string, AlertWay>, DeliveryQueue> queues_;  ///< by the alert's name; made when needed
+  std::optional<Ledger> ledger_;
+  std::map<std::pair<std::string, Channel>, DeliveryQueue> queues_;  ///< by the alert's name; made when needed
 };
 
 }  // namespace yuragi::daemon::alerts

@@ -20,8 +20,8 @@ DeliveryQueue::DeliveryQueue(Calls calls, const RetryTimes& times)
 
 DeliveryQueue::~DeliveryQueue() = default;
 
-void DeliveryQueue::push(AlertNews news) {
-  std::optional<AlertNews> given_up;
+void DeliveryQueue::push(News news) {
+  std::optional<News> given_up;
   {
     const std::lock_guard lock(mutex_);
     if (waiting_.size() == kMaxWaiting) {
@@ -43,7 +43,7 @@ bool DeliveryQueue::is_idle() const {
 void DeliveryQueue::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return !waiting_.empty(); }) && !stop.stop_requested()) {
-    const AlertNews news = std::move(waiting_.front());
+    const News news = std::move(waiting_.front());
     waiting_.pop_front();
     const std::size_t given_up = std::exchange(given_up_, 0);
     is_delivering_ = true;
@@ -56,7 +56,7 @@ void DeliveryQueue::work(const std::stop_token& stop) {
   }
 }
 
-void DeliveryQueue::deliver(const AlertNews& news, const std::stop_token& stop) {
+void DeliveryQueue::deliver(const News& news, const std::stop_token& stop) {
   using Clock = std::chrono::steady_clock;
   const auto first_try = Clock::now();
   platform::Backoff pauses(times_.first, times_.longest, 1);
@@ -80,7 +80,7 @@ void DeliveryQueue::deliver(const AlertNews& news, const std::stop_token& stop) 
   }
 }
 
-Result<void, Failure> DeliveryQueue::try_once(const AlertNews& news, const std::stop_token& stop) const {
+Result<void, Failure> DeliveryQueue::try_once(const News& news, const std::stop_token& stop) const {
   Result<void, Failure> delivered;
   contain(
       "delivering an alert", [&] { delivered = calls_.deliver(news, stop); },

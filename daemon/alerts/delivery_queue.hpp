@@ -29,11 +29,11 @@ class DeliveryQueue {
  public:
   struct Calls {
     /// Called on the queue's thread. May wait, but not for long after a stop was requested.
-    std::function<Result<void, Failure>(const AlertNews&, const std::stop_token&)> deliver;
+    std::function<Result<void, Failure>(const News&, const std::stop_token&)> deliver;
     /// Called on the queue's thread with the alert's name and a sentence. Must not throw.
     std::function<void(std::string_view alert, std::string_view what)> report;
     /// Called when news is delivered or given up, but not with what the queue's end gives up. Must not throw.
-    std::function<void(const AlertNews&)> settle = [](const AlertNews&) {};
+    std::function<void(const News&)> settle = [](const News&) {};
   };
 
   /// Drops the oldest if too many wait.
@@ -45,7 +45,7 @@ class DeliveryQueue {
   DeliveryQueue& operator=(const DeliveryQueue&) = delete;
 
   /// Does not wait.
-  void push(AlertNews news);
+  void push(News news);
 
   /// Returns true if nothing waits and nothing is being delivered.
   bool is_idle() const;
@@ -56,14 +56,14 @@ class DeliveryQueue {
  private:
   void work(const std::stop_token& stop);
   /// Tries until it is delivered, given up, or a stop is requested.
-  void deliver(const AlertNews& news, const std::stop_token& stop);
-  Result<void, Failure> try_once(const AlertNews& news, const std::stop_token& stop) const;
+  void deliver(const News& news, const std::stop_token& stop);
+  Result<void, Failure> try_once(const News& news, const std::stop_token& stop) const;
 
   Calls calls_;
   RetryTimes times_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<AlertNews> waiting_;
+  std::deque<News> waiting_;
   bool is_delivering_ = false;
   std::size_t given_up_ = 0;  ///< because there was no room; not yet reported
   std::jthread thread_;

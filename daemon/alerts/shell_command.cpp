@@ -26,7 +26,7 @@ namespace {
 using platform::Descriptor;
 
 /// Returns this program's environment and the command's own variables. A name can hold any byte except zero.
-std::vector<std::string> environment_for(const AlertNews& news) {
+std::vector<std::string> environment_for(const News& news) {
   std::vector<std::string> all;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     if (!std::string_view(*entry).starts_with("YURAGI_ALERT")) all.emplace_back(*entry);
@@ -73,7 +73,7 @@ Failure cannot_start(int error) {
 
 }  // namespace
 
-Result<void, Failure> run_command(const AlertNews& news, Nanoseconds most, const std::stop_token& stop,
+Result<void, Failure> run_command(const News& news, Nanoseconds most, const std::stop_token& stop,
                                   std::string& output) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return cannot_start(errno);

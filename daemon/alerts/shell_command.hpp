@@ -18,7 +18,6 @@ inline constexpr std::size_t kMaxCommandOutput_bytes = 64UL * 1024;
 /// reads nothing and inherits no file of this program. `output` receives the first kMaxCommandOutput_bytes of what it
 /// prints to standard output and standard error; the rest is dropped. The failure is its exit code or its signal.
 /// Thread-safe: yes.
-Result<void, Failure> run_command(const AlertNews& news, Nanoseconds most, const std::stop_token& stop,
-                                  std::string& output);
+Result<void, Failure> run_command(const News& news, Nanoseconds most, const std::stop_token& stop, std::string& output);
 
 }  // namespace yuragi::daemon::alerts

@@ -49,7 +49,7 @@ int is_stopped(void* stop, curl_off_t /*of*/, curl_off_t /*received*/, curl_off_
 
 }  // namespace
 
-std::string webhook_body(const AlertNews& news, const std::string& host) {
+std::string webhook_body(const News& news, const std::string& host) {
   const auto time = std::chrono::floor<std::chrono::seconds>(news.time);
   const nlohmann::ordered_json body = {
       {"alert", news.alert},
@@ -61,7 +61,7 @@ std::string webhook_body(const AlertNews& news, const std::string& host) {
   return json_text(body);
 }
 
-Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& host, const std::stop_token& stop) {
+Result<void, Failure> post_to_webhook(const News& news, const std::string& host, const std::stop_token& stop) {
   static std::once_flag once;
   std::call_once(once, [] { curl_global_init(CURL_GLOBAL_DEFAULT); });
 

@@ -41,7 +41,7 @@ Animation::Animation(const settings::Config& config, const std::shared_ptr<const
 
 void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::uint64_t ticks) noexcept {
   if (change_ && !change_->is_over && change_->has_faded_out()) finish_change();
-  wind::ground::GroundWind ground = written_to(tapes_, wind);
+  wind::ground::Wind ground = written_to(tapes_, wind);
   tick_ += ticks;
   ground.tick = tick_;
   view_wind_.advance(dt_s, wind.state.wind, wind.state.live_weight >= kLiveWeight);

@@ -31,7 +31,7 @@ struct SceneCue {
 /// (StagedScene::step_time), and decides only whether threads share the next steps.
 ///
 /// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step
-/// waits for the pool's threads (WorkerPool), if that takes less time (SharingChoice). Poses do not depend on the
+/// waits for the pool's threads (workers::Pool), if that takes less time (SharingChoice). Poses do not depend on the
 /// number of threads.
 class Animation {
  public:
@@ -84,7 +84,7 @@ class Animation {
 
   std::unique_ptr<SceneList> scenes_;
   std::unique_ptr<SceneChange> change_;  // that is being carried out, or over and not yet taken
-  workers::WorkerPool pool_;
+  workers::Pool pool_;
   workers::SharingChoice sharing_;
   wind::ground::WindTapes tapes_;
   wind::ViewWind view_wind_;

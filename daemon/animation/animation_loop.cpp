@@ -30,8 +30,8 @@ constexpr std::size_t kWaitingOrders = 64;
 
 }  // namespace
 
-AnimationLoop::AnimationLoop(Animation& animation, Latest<wind::ground::DrivingWind>& wind,
-                             const drivers::sensor::Clock& clock, double rate_hz)
+Loop::Loop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const drivers::sensor::Clock& clock,
+           double rate_hz)
     : animation_(animation),
       wind_(wind),
       clock_(clock),
@@ -41,7 +41,7 @@ AnimationLoop::AnimationLoop(Animation& animation, Latest<wind::ground::DrivingW
   if (frame_ready_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
 
-AnimationLoop::~AnimationLoop() {
+Loop::~Loop() {
   stop();
   close(frame_ready_fd_);
   // What was handed over and not taken.
@@ -49,38 +49,38 @@ AnimationLoop::~AnimationLoop() {
   take_finished_change();
 }
 
-void AnimationLoop::start() {
+void Loop::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   pthread_setname_np(thread_.native_handle(), "animation");
 }
 
-void AnimationLoop::stop() {
+void Loop::stop() {
   if (!thread_.joinable()) return;
   thread_.request_stop();
   thread_.join();
 }
 
-bool AnimationLoop::begin_change(std::unique_ptr<SceneChange>& change) {
+bool Loop::begin_change(std::unique_ptr<SceneChange>& change) {
   if (is_changing_ || !orders_.push({.change = change.get()})) return false;
   static_cast<void>(change.release());  // the ring owns it
   is_changing_ = true;
   return true;
 }
 
-std::unique_ptr<SceneChange> AnimationLoop::take_finished_change() noexcept {
+std::unique_ptr<SceneChange> Loop::take_finished_change() noexcept {
   std::unique_ptr<SceneChange> finished(finished_.exchange(nullptr, std::memory_order_acquire));
   if (finished) is_changing_ = false;
   return finished;
 }
 
-std::optional<std::string> AnimationLoop::failure() const {
+std::optional<std::string> Loop::failure() const {
   if (!has_failed_.load(std::memory_order_acquire)) return std::nullopt;
   return failure_;
 }
 
 /// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): what remains is the frame, if
 /// there is no memory for it, or a pose that is not of its skeleton's kind.
-void AnimationLoop::run(const std::stop_token& stop) {
+void Loop::run(const std::stop_token& stop) {
   const bool is_over = contain(
       "the animation", [&] { run_ticks(stop); }, [this](const char* what) { failure_ = what; });
   if (is_over) return;
@@ -88,7 +88,7 @@ void AnimationLoop::run(const std::stop_token& stop) {
   wake_io_thread();
 }
 
-void AnimationLoop::run_ticks(const std::stop_token& stop) {
+void Loop::run_ticks(const std::stop_token& stop) {
   TickSchedule schedule(clock_.now().mono, rate_hz_);
   while (!stop.stop_requested()) {
     sleep_until(schedule.next_deadline());
@@ -102,7 +102,7 @@ void AnimationLoop::run_ticks(const std::stop_token& stop) {
   }
 }
 
-void AnimationLoop::tick(const TickSchedule::Tick& tick) {
+void Loop::tick(const TickSchedule::Tick& tick) {
   // Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit.
   wind_.refresh();
   const wind::ground::DrivingWind& wind = wind_.value();
@@ -113,7 +113,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
 
   // The wind is some milliseconds older than the frame, and with it the age of its newest reading.
   const Instant now = clock_.now();
-  wind::WindState state = wind.state;
+  wind::State state = wind.state;
   if (state.live_weight > 0.0) state.reading_age_s += std::max(0.0, seconds(now.mono - state.time));
   const wire::FrameInfo info{.sequence = sequence_++,
                              .tick = tick.number,
@@ -130,7 +130,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
 }
 
 /// After the wind was taken: the I/O thread publishes wind for new scenes behind the change.
-void AnimationLoop::take_orders() {
+void Loop::take_orders() {
   orders_.drain([this](const Order& order) {
     if (order.change == nullptr) return animation_.cue(order.cue);
     animation_.begin_change(std::unique_ptr<SceneChange>(order.change));
@@ -138,7 +138,7 @@ void AnimationLoop::take_orders() {
 }
 
 /// Fails only when 2^64 frames have not been read.
-void AnimationLoop::wake_io_thread() noexcept {
+void Loop::wake_io_thread() noexcept {
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(frame_ready_fd_, &one, sizeof one);
 }

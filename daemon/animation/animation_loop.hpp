@@ -45,16 +45,16 @@ struct PublishedFrame {
 /// The animation's thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and publishes
 /// it. Once started it neither allocates nor blocks: wind and frames pass through triple buffers, cues and changes of
 /// the scenes through a ring, and an eventfd wakes the I/O thread.
-class AnimationLoop {
+class Loop {
  public:
   /// `wind` must outlive the loop and is written by the I/O thread. The clock must be the system's: the loop sleeps on
   /// CLOCK_MONOTONIC.
-  AnimationLoop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const drivers::sensor::Clock& clock,
-                double rate_hz);
-  ~AnimationLoop();
+  Loop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const drivers::sensor::Clock& clock,
+       double rate_hz);
+  ~Loop();
 
-  AnimationLoop(const AnimationLoop&) = delete;
-  AnimationLoop& operator=(const AnimationLoop&) = delete;
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
 
   void start();
   void stop();

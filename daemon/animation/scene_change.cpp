@@ -9,7 +9,7 @@
 namespace yuragi::daemon::animation {
 namespace {
 
-bool is_same_place(const scenes::ScenePlacement& a, const scenes::ScenePlacement& b) {
+bool is_same_place(const scenes::Placement& a, const scenes::Placement& b) {
   return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.heading_deg == b.heading_deg;
 }
 

@@ -4,7 +4,7 @@
 
 namespace yuragi::daemon::animation {
 
-SceneExchange::SceneExchange(const Animation& animation, AnimationLoop& loop, SceneDirector& director)
+SceneExchange::SceneExchange(const Animation& animation, Loop& loop, SceneDirector& director)
     : loop_(loop), director_(director), present_(animation.roster()) {}
 
 bool SceneExchange::begin(std::unique_ptr<SceneChange>& change) {

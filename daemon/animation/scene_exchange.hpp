@@ -19,7 +19,7 @@ namespace yuragi::daemon::animation {
 class SceneExchange {
  public:
   /// `animation`: is read here only, before its loop starts. The others must outlive this.
-  SceneExchange(const Animation& animation, AnimationLoop& loop, SceneDirector& director);
+  SceneExchange(const Animation& animation, Loop& loop, SceneDirector& director);
 
   /// What the next change is made from, by any thread. Not while is_changing().
   const std::shared_ptr<const SceneRoster>& present() const noexcept { return present_; }
@@ -38,7 +38,7 @@ class SceneExchange {
   std::unique_ptr<SceneChange> take_finished() noexcept { return loop_.take_finished_change(); }
 
  private:
-  AnimationLoop& loop_;
+  Loop& loop_;
   SceneDirector& director_;
   std::shared_ptr<const SceneRoster> present_;
   std::vector<SceneChange::Message> messages_;  // of lists that no frame has come of yet

@@ -71,7 +71,7 @@ class OwnDaemon {
   OwnDaemon(const settings::Config& config, double longest_s)
       : service_(config, {.record = std::nullopt, .duration_s = longest_s}),
         end_(std::async(std::launch::async, [this] { service_.run(); })),
-        client_(stream::StreamClient::connect(config.stream.listen, kOwnConnectTimeout).value()) {
+        client_(stream::Client::connect(config.stream.listen, kOwnConnectTimeout).value()) {
     // Its Hello comes when run() handles signals.
     const auto hello = client_.receive(kOwnConnectTimeout);
     is_running_ = hello.has_value();
@@ -93,7 +93,7 @@ class OwnDaemon {
       const auto message = client_.receive(kOwnSilenceTimeout);
       if (message) {
         measurement.take(*message, clock_.now());
-      } else if (message.error() != stream::StreamEnd::kTimeout) {
+      } else if (message.error() != stream::End::kTimeout) {
         is_running_ = false;
         end_.get();  // throws what ended it
         throw ExitError(kExitUnavailable, "interrupted");
@@ -105,7 +105,7 @@ class OwnDaemon {
   sensing::SystemClock clock_;
   service::Service service_;
   std::future<void> end_;
-  stream::StreamClient client_;
+  stream::Client client_;
   bool is_running_ = false;
 };
 

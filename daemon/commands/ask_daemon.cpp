@@ -46,7 +46,7 @@ class StatusCollector {
 }  // namespace
 
 Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& address, const std::string& client) {
-  auto stream = stream::StreamClient::connect(address, kAskConnectTimeout);
+  auto stream = stream::Client::connect(address, kAskConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
   // If the daemon has closed the connection, its Hello, which can still be read, has the reason.
   if (stream->subscribe(
@@ -60,7 +60,7 @@ Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& addr
     const auto left = deadline - std::chrono::steady_clock::now();
     auto message = stream->receive(std::max<Nanoseconds>(left, Nanoseconds{0}));
     if (!message) {
-      if (message.error() == stream::StreamEnd::kTimeout && collector.has_answered()) break;
+      if (message.error() == stream::End::kTimeout && collector.has_answered()) break;
       return stream::connection_lost(address, message.error());
     }
     if (const auto refusal = stream::refusal_in(*message, address)) return *refusal;

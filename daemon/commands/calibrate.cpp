@@ -44,7 +44,7 @@ void add_calibrate(CLI::App& app) {
 
 }  // namespace
 
-void add_calibration_request(CLI::App& command, tools::calibration::CalibrationRequest& request,
+void add_calibration_request(CLI::App& command, tools::calibration::Request& request,
                              const std::string& default_duration) {
   command.add_option("--config,-c", request.config_file, "the configuration file, which is read and written")
       ->required()

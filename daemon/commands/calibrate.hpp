@@ -13,7 +13,7 @@ void add_calibrate_span(CLI::App& calibrate);
 void add_calibrate_microphone(CLI::App& calibrate);
 
 /// Adds the options that all of them have; `default_duration` is for the help.
-void add_calibration_request(CLI::App& command, tools::calibration::CalibrationRequest& request,
+void add_calibration_request(CLI::App& command, tools::calibration::Request& request,
                              const std::string& default_duration);
 
 }  // namespace yuragi::daemon::commands

@@ -22,7 +22,7 @@ constexpr double kMicBlock_s = 5.0;
 constexpr double kMinMeasuredPart = 0.5;
 
 struct MicrophoneOptions {
-  tools::calibration::CalibrationRequest request;
+  tools::calibration::Request request;
   std::vector<double> speeds_m_s;
 };
 
@@ -55,7 +55,7 @@ void refuse_another_band(std::string_view key, double then_hz, double now_hz) {
 }
 
 /// For a recording, the settings that it was made with; else those of the configuration.
-LevelConversion level_conversion(const tools::calibration::CalibrationSession& session,
+LevelConversion level_conversion(const tools::calibration::Session& session,
                                  const tools::calibration::SensorReadings& collected) {
   const drivers::microphone::MicLevelSettings now = drivers::microphone::mic_level_settings_of(session.sensor().values);
   std::vector<LevelConversion> all;
@@ -92,7 +92,7 @@ std::vector<wind::judging::TimedSpeed> levels_of(const tools::calibration::Senso
 }
 
 /// Pairs of mean level and mean true speed, block by block.
-std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::calibration::CalibrationSession& session,
+std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::calibration::Session& session,
                                                                         LevelConversion& conversion) {
   const tools::calibration::CollectedReadings collected = session.collect(
       "The microphone and the reference must be in the same wind, as close together as possible. Both calm and wind "
@@ -129,8 +129,8 @@ std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::c
 }
 
 /// The mean level in a wind of this speed.
-drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::CalibrationSession& session,
-                                                            double speed_m_s, LevelConversion& conversion) {
+drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::Session& session, double speed_m_s,
+                                                            LevelConversion& conversion) {
   const tools::calibration::CollectedReadings collected = session.collect(
       fmt::format("Set the wind at the microphone to a steady {:g} m/s, with no other sound.", speed_m_s));
   conversion = level_conversion(session, collected[0]);
@@ -146,7 +146,7 @@ drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::
 }
 
 drivers::decode::microphone::MicCalibration calibration_by_two_winds(
-    tools::calibration::CalibrationSession& session, const std::vector<double>& speeds_m_s, LevelConversion& conversion,
+    tools::calibration::Session& session, const std::vector<double>& speeds_m_s, LevelConversion& conversion,
     std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   for (const double speed_m_s : speeds_m_s) pairs.push_back(measure_level(session, speed_m_s, conversion));
   if (conversion.kind == drivers::decode::microphone::MicFitKind::kCurve) {
@@ -162,7 +162,7 @@ drivers::decode::microphone::MicCalibration calibration_by_two_winds(
 }
 
 drivers::decode::microphone::MicCalibration calibration_beside(
-    tools::calibration::CalibrationSession& session, LevelConversion& conversion,
+    tools::calibration::Session& session, LevelConversion& conversion,
     std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   pairs = pairs_beside(session, conversion);
   const drivers::decode::microphone::MicFit fit = tools::calibration::value_or_refuse(
@@ -178,7 +178,7 @@ drivers::decode::microphone::MicCalibration calibration_beside(
 }
 
 /// The speeds at some levels with the present and the new calibration: the lines of a table.
-std::vector<std::string> level_effect(const tools::calibration::CalibrationSession& session,
+std::vector<std::string> level_effect(const tools::calibration::Session& session,
                                       const drivers::decode::microphone::MicCalibration& then, double noise_power,
                                       const std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   const drivers::decode::microphone::MicCalibration now =
@@ -191,7 +191,7 @@ std::vector<std::string> level_effect(const tools::calibration::CalibrationSessi
   for (int step = 0; step <= 3; ++step) {
     const double level_db = softest.level_db + (loudest.level_db - softest.level_db) * step / 3.0;
     const double power = std::pow(10.0, 0.1 * level_db);
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.speed_m_s = drivers::decode::microphone::mic_speed_m_s(now, power, noise_power);
     lines.push_back(fmt::format("{:8.1f} dB        {:8.2f} m/s   {:6.2f} m/s", level_db,
                                 after.applied_to(reading).speed_m_s,
@@ -210,7 +210,7 @@ void calibrate_microphone(const MicrophoneOptions& options) {
   if (!options.request.recording.empty() && (has_reference ? parts > 1 : parts != 2)) {
     throw ExitError(kExitUsage, "--part: give one with --reference, or one for each --speed, in the same order");
   }
-  tools::calibration::CalibrationSession session(options.request, has_reference ? 900.0 : 60.0);
+  tools::calibration::Session session(options.request, has_reference ? 900.0 : 60.0);
   if (session.sensor().driver->calibration != drivers::sensor::CalibrationMeans::kSoundLevel) {
     throw ExitError(kExitUsage,
                     fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", session.sensor().name));

@@ -15,12 +15,12 @@ constexpr double kMinVaneSpeed_m_s = 1.0;  // below it a vane does not turn
 constexpr double kTurnBlock_s = 10.0;
 
 struct NorthOptions {
-  tools::calibration::CalibrationRequest request;
+  tools::calibration::Request request;
   std::optional<double> bearing_deg;
 };
 
 /// The offset of the vane, by pointing it at a landmark of known bearing.
-double turn_by_landmark(tools::calibration::CalibrationSession& session, double bearing_deg) {
+double turn_by_landmark(tools::calibration::Session& session, double bearing_deg) {
   const tools::calibration::CollectedReadings collected = session.collect(
       fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
                   "came from there, and hold it\nstill.",
@@ -41,7 +41,7 @@ std::vector<wind::judging::TimedDirection> directions_of(const tools::calibratio
                                                          const wind::judging::Calibration& calibration) {
   std::vector<wind::judging::TimedDirection> directions;
   for (const tools::calibration::TimedReading& one : collected.readings) {
-    const wind::WindReading reading = calibration.applied_to(one.reading);
+    const wind::Reading reading = calibration.applied_to(one.reading);
     if (reading.direction_deg && reading.speed_m_s >= kMinVaneSpeed_m_s) {
       directions.push_back({one.time_s, *reading.direction_deg});
     }
@@ -50,7 +50,7 @@ std::vector<wind::judging::TimedDirection> directions_of(const tools::calibratio
 }
 
 /// The offset, by comparison with another vane in the same wind.
-double turn_by_reference(tools::calibration::CalibrationSession& session) {
+double turn_by_reference(tools::calibration::Session& session) {
   const tools::calibration::CollectedReadings collected =
       session.collect("Both vanes must be in the same wind, of more than 1 m/s.");
   wind::judging::Calibration without_north = session.calibration();
@@ -68,7 +68,7 @@ double turn_by_reference(tools::calibration::CalibrationSession& session) {
 void calibrate_north(NorthOptions options) {
   const bool has_reference = !options.request.reference.empty();
   if (has_reference && options.bearing_deg) throw ExitError(kExitUsage, "give --bearing or --reference, not both");
-  tools::calibration::CalibrationSession session(options.request, has_reference ? 900.0 : 20.0);
+  tools::calibration::Session session(options.request, has_reference ? 900.0 : 20.0);
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
   if (!has_reference && !options.bearing_deg) {
     if (!session.dialog().has_person()) throw ExitError(kExitUsage, "give --bearing DEG or --reference NAME");
@@ -86,7 +86,7 @@ void calibrate_north(NorthOptions options) {
   then.north_offset_deg = north_offset_deg;
   std::vector<std::string> effect = {"   reading     direction now   direction then"};
   for (const double indicated_deg : {0.0, 90.0, 180.0, 270.0}) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.direction_deg = indicated_deg;
     effect.push_back(fmt::format("{:7.0f} deg        {:7.1f} deg     {:7.1f} deg", indicated_deg,
                                  *now.applied_to(reading).direction_deg, *then.applied_to(reading).direction_deg));

@@ -19,14 +19,14 @@ constexpr double kSpanBlock_s = 10.0;
 constexpr double kMaxUnsteadiness = 0.3;  // standard deviation over mean of a steady wind
 
 struct SpanOptions {
-  tools::calibration::CalibrationRequest request;
+  tools::calibration::Request request;
   std::vector<double> speeds_m_s;
   std::string points;
   bool wants_curve = false;
 };
 
 /// The indicated speed in a wind of this true speed.
-wind::judging::CalibrationPoint measure_known_speed(tools::calibration::CalibrationSession& session, double speed_m_s) {
+wind::judging::CalibrationPoint measure_known_speed(tools::calibration::Session& session, double speed_m_s) {
   const tools::calibration::CollectedReadings collected = session.collect(fmt::format(
       "Set the wind at the sensor to a steady {:g} m/s: with a fan or a wind tunnel, and an accurate meter next to it.",
       speed_m_s));
@@ -50,7 +50,7 @@ wind::judging::CalibrationPoint measure_known_speed(tools::calibration::Calibrat
 }
 
 /// The pairs of indicated and true speed, from the options.
-std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::CalibrationSession& session,
+std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::Session& session,
                                                          const SpanOptions& options) {
   if (!options.points.empty())
     return tools::calibration::value_or_refuse(wind::judging::parse_calibration_curve(options.points));
@@ -70,8 +70,7 @@ std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::Cal
 }
 
 /// Hints at a wrong unit, if the gain is close to a conversion factor.
-void hint_at_unit(const tools::calibration::CalibrationSession& session, tools::calibration::CalibrationDialog& dialog,
-                  double gain) {
+void hint_at_unit(const tools::calibration::Session& session, tools::calibration::Dialog& dialog, double gain) {
   if (session.calibration().unit_m_s != 1.0) return;
   for (const std::string_view unit : drivers::sensor::kSpeedUnitNames) {
     const double metres_per_second = drivers::sensor::metres_per_second_in(unit);
@@ -118,7 +117,7 @@ std::vector<double> shown_speeds(const std::vector<wind::judging::CalibrationPoi
 
 void calibrate_span(const SpanOptions& options) {
   check_options(options);
-  tools::calibration::CalibrationSession session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
+  tools::calibration::Session session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
   if (session.sensor().driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
     throw ExitError(kExitUsage, "a microphone is calibrated with `yuragi calibrate microphone`");
   }

@@ -10,8 +10,8 @@
 namespace yuragi::daemon::commands {
 namespace {
 
-void calibrate_zero(const tools::calibration::CalibrationRequest& request) {
-  tools::calibration::CalibrationSession session(request, 30.0);
+void calibrate_zero(const tools::calibration::Request& request) {
+  tools::calibration::Session session(request, 30.0);
   if (session.sensor().driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
     throw ExitError(kExitUsage,
                     "a microphone has no zero: its noise in a calm is found while it runs, or set as its noise_floor");
@@ -46,7 +46,7 @@ void add_calibrate_zero(CLI::App& calibrate) {
       "4-20 mA input may read some tenths.\n"
       "  yuragi calibrate zero --config wall.toml --sensor roof --for 60\n"
       "  yuragi calibrate zero --config wall.toml --sensor roof --recording night.windlog --part 120,300 --dry-run");
-  auto request = std::make_shared<tools::calibration::CalibrationRequest>();
+  auto request = std::make_shared<tools::calibration::Request>();
   add_calibration_request(*command, *request, "30");
   command->callback([request] { calibrate_zero(*request); });
 }

@@ -79,7 +79,7 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
     if (full) alerts.back()["values"] = json_of(alert.values);
   }
   nlohmann::ordered_json outputs = nlohmann::ordered_json::array();
-  for (const output::OutputTable& output : config.outputs) {
+  for (const output::Table& output : config.outputs) {
     nlohmann::ordered_json windows = nlohmann::ordered_json::array();
     for (const output::Window& window : output.output.windows) windows.push_back({{"monitor", window.monitor}});
     for (std::size_t i = 0; full && i < output.windows.size(); ++i) windows[i] = json_of(output.windows[i]);
@@ -218,7 +218,7 @@ std::vector<DescribedTable> all_tables() {
                    fmt::format("below a [[sensor]] of any kind: {}", table.summary), table.parameters});
   }
   all.push_back({"[[scene]]", "of any kind: its place and visibility", settings::common_scene_parameters()});
-  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
+  for (const scenes::Description* scene : scenes::scene_table()) {
     all.push_back({"[[scene]]", fmt::format("kind = \"{}\": {}", scene->name, scene->summary), scene->parameters});
   }
   all.push_back({"[[camera]]",

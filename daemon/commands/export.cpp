@@ -70,7 +70,7 @@ struct ExportOptions {
 };
 
 /// The log time of --from or --to; nullopt if it is after the end.
-std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, const std::string& option,
+std::optional<Nanoseconds> resolve(drivers::windlog::Reader& reader, const std::string& option,
                                    const std::string& text) {
   const auto moment = drivers::windlog::parse_log_moment(text);
   if (!moment) throw ExitError(kExitUsage, option + ": " + moment.error().message);
@@ -80,7 +80,7 @@ std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, cons
 }
 
 /// The log time of --since or --until: a moment, or a duration back from the end; nullopt if it is after the end.
-std::optional<Nanoseconds> resolve_back(drivers::windlog::WindlogReader& reader, const std::string& option,
+std::optional<Nanoseconds> resolve_back(drivers::windlog::Reader& reader, const std::string& option,
                                         const std::string& text) {
   if (const auto back_s = parse_duration_s(text)) {
     const double last_s = seconds(reader.duration());
@@ -97,8 +97,8 @@ std::optional<Nanoseconds> resolve_back(drivers::windlog::WindlogReader& reader,
   return *log_time;
 }
 
-tools::csv::CsvExportRange range_of(drivers::windlog::WindlogReader& reader, const ExportOptions& options) {
-  tools::csv::CsvExportRange range;
+tools::csv::ExportRange range_of(drivers::windlog::Reader& reader, const ExportOptions& options) {
+  tools::csv::ExportRange range;
   if (!options.from.empty()) range.from = resolve(reader, "--from", options.from).value_or(Nanoseconds::max());
   if (!options.to.empty()) range.to = resolve(reader, "--to", options.to).value_or(Nanoseconds::max());
   if (!options.since.empty()) {
@@ -110,7 +110,7 @@ tools::csv::CsvExportRange range_of(drivers::windlog::WindlogReader& reader, con
   return range;
 }
 
-void export_quantities(const drivers::windlog::WindlogReader& reader, const tools::csv::CsvExportRange& range,
+void export_quantities(const drivers::windlog::Reader& reader, const tools::csv::ExportRange& range,
                        const std::string& output, std::FILE* out) {
   const auto report = tools::csv::export_quantities_csv(reader, range, out);
   if (!report) throw ExitError(kExitDataError, report.error().message);
@@ -121,8 +121,8 @@ void export_quantities(const drivers::windlog::WindlogReader& reader, const tool
   fmt::print(stderr, "{}: {}\n", output == "-" ? "standard output" : output, count_text(report->written, "row"));
 }
 
-void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions& options, std::FILE* out) {
-  const tools::csv::CsvExportRange range = range_of(reader, options);
+void export_as_csv(drivers::windlog::Reader& reader, const ExportOptions& options, std::FILE* out) {
+  const tools::csv::ExportRange range = range_of(reader, options);
   if (options.quantities) return export_quantities(reader, range, options.output, out);
   const bool is_watched = isatty(STDERR_FILENO) != 0 && isatty(fileno(out)) == 0;
   const auto began = std::chrono::steady_clock::now();
@@ -162,7 +162,7 @@ void run_export(const ExportOptions& options) {
     refuse_others(options);
     return export_take(options.take, options.input, options.from, options.output, options.force);
   }
-  auto reader = drivers::windlog::WindlogReader::open(options.input);
+  auto reader = drivers::windlog::Reader::open(options.input);
   if (!reader) {
     const bool is_there = drivers::windlog::recording_exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);

@@ -49,7 +49,7 @@ class TakeMaker {
     tools::take::checked_size(recorder_->joints(), static_cast<double>(recorder_->frames() + 1)).value();
     recorder_->add(*animation.poses()[scene_]);
   }
-  const tools::take::TakeRecorder& recorder() const {
+  const tools::take::Recorder& recorder() const {
     if (!recorder_) throw ExitError(kExitDataError, "the recording has no reading from that time on");
     return *recorder_;
   }
@@ -73,14 +73,14 @@ class TakeMaker {
     if (every_ < *least)
       throw ExitError(kExitUsage, fmt::format("--every: must be at least {} here: a glTF file can have {} joints",
                                               *least, tools::take::kMaxJoints));
-    recorder_ = std::make_unique<tools::take::TakeRecorder>(skeleton, name_, every_, options_.fps);
+    recorder_ = std::make_unique<tools::take::Recorder>(skeleton, name_, every_, options_.fps);
     if (options_.duration_s) {
       tools::take::checked_size(recorder_->joints(), std::floor(*options_.duration_s * options_.fps)).value();
     }
   }
 
   const TakeOptions& options_;
-  std::unique_ptr<tools::take::TakeRecorder> recorder_;
+  std::unique_ptr<tools::take::Recorder> recorder_;
   std::string name_;
   std::size_t scene_ = 0;
   std::size_t every_ = 1;
@@ -126,7 +126,7 @@ void export_take(const TakeOptions& options, const std::filesystem::path& record
       [&maker](const tools::offline::ReplayTick& tick) { maker.take(tick.log_time_s, tick.animation); })
       .value();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
-  const tools::take::TakeRecorder& take = maker.recorder();
+  const tools::take::Recorder& take = maker.recorder();
   std::ofstream out(file.working_path(), std::ios::binary);
   if (const auto written = take.write_glb(out); !written)
     throw ExitError(kExitCannotCreate, output.string() + ": " + written.error().message);

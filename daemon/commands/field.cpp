@@ -98,8 +98,8 @@ std::size_t parse_edge(const std::string& text, double spacing_m) {
   return static_cast<std::size_t>(samples);
 }
 
-wind::field::FieldGrid grid_of(const FieldOptions& options) {
-  wind::field::FieldGrid grid;
+wind::field::Grid grid_of(const FieldOptions& options) {
+  wind::field::Grid grid;
   grid.spacing_m = options.wind.spacing_m;
   std::vector<std::size_t> edges;
   for (const std::string& edge : options.size) edges.push_back(parse_edge(edge, grid.spacing_m));
@@ -118,7 +118,7 @@ wind::field::FieldGrid grid_of(const FieldOptions& options) {
 }
 
 /// The tile size given by an option, or one that is large enough for the grid.
-std::size_t tile_of(const FieldOptions& options, const wind::field::FieldGrid& grid) {
+std::size_t tile_of(const FieldOptions& options, const wind::field::Grid& grid) {
   const bool is_space = options.wind.dims == 3;
   const std::size_t largest = is_space ? noise::kMaxNoiseSize3 : noise::kMaxNoiseSize2;
   const std::size_t edge = std::max({grid.count_x, grid.count_y, grid.count_z});
@@ -163,7 +163,7 @@ class FieldFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-nlohmann::ordered_json description_of(const FieldOptions& options, const wind::field::FieldGrid& grid,
+nlohmann::ordered_json description_of(const FieldOptions& options, const wind::field::Grid& grid,
                                       const std::vector<std::size_t>& shape) {
   const auto axis = [&](const char* toward, double first_m) {
     return nlohmann::ordered_json{{"toward", toward}, {"first_m", first_m}, {"step_m", grid.spacing_m}};
@@ -184,8 +184,7 @@ nlohmann::ordered_json description_of(const FieldOptions& options, const wind::f
 }
 
 /// The speed of a frame's lowest level, seen from above, and the wind at some places.
-tools::plot::PlotMap map_of(std::span<const float> frame, const wind::field::FieldGrid& grid,
-                            const std::string& title) {
+tools::plot::Map map_of(std::span<const float> frame, const wind::field::Grid& grid, const std::string& title) {
   constexpr std::size_t kMaxSamples = 500;
   constexpr std::size_t kArrows = 24;
   const std::size_t longest = std::max(grid.count_x, grid.count_z);
@@ -199,17 +198,17 @@ tools::plot::PlotMap map_of(std::span<const float> frame, const wind::field::Fie
   };
 
   const wind::field::WindPlace first = grid.place(0, 0, 0);
-  tools::plot::PlotMap map{.title = title,
-                           .x_label = "east of the middle, m",
-                           .y_label = "north of the middle, m",
-                           .value_label = "wind speed, m/s",
-                           .columns = (grid.count_x + thin - 1) / thin,
-                           .first_x = first.x_m,
-                           .step_x = grid.spacing_m * static_cast<double>(thin),
-                           .first_y = -first.z_m,
-                           .step_y = -grid.spacing_m * static_cast<double>(thin),
-                           .values = {},
-                           .arrows = {}};
+  tools::plot::Map map{.title = title,
+                       .x_label = "east of the middle, m",
+                       .y_label = "north of the middle, m",
+                       .value_label = "wind speed, m/s",
+                       .columns = (grid.count_x + thin - 1) / thin,
+                       .first_x = first.x_m,
+                       .step_x = grid.spacing_m * static_cast<double>(thin),
+                       .first_y = -first.z_m,
+                       .step_y = -grid.spacing_m * static_cast<double>(thin),
+                       .values = {},
+                       .arrows = {}};
   double strongest_m_s = 1e-9;
   for (std::size_t k = 0; k < grid.count_z; k += thin) {
     for (std::size_t i = 0; i < grid.count_x; i += thin) {
@@ -246,7 +245,7 @@ void run_field(FieldOptions options) {
                     "--stress: needs the vertical wind, which a field of 2 dimensions does not have; add --dims 3");
   }
   if (options.wind.dims == 3) options.wind.stress = options.stress.value_or(kStressNearTheGround);
-  const wind::field::FieldGrid grid = grid_of(options);
+  const wind::field::Grid grid = grid_of(options);
   const std::vector<std::size_t> shape = {options.frames.count, static_cast<std::size_t>(options.wind.dims),
                                           grid.count_z, grid.count_y, grid.count_x};
   double bytes = sizeof(float);

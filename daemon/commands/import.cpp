@@ -69,7 +69,7 @@ enum class Format : std::uint8_t { kAuto, kCsv, kLog };
 struct ImportOptions {
   std::string input;
   std::string output;
-  tools::csv::CsvImportOptions csv;
+  tools::csv::ImportOptions csv;
   std::string unit;
   std::string gust_unit;
   std::string zone;
@@ -92,7 +92,7 @@ char delimiter_named(const std::string& text) {
   throw ExitError(kExitUsage, "--delimiter: is \"" + text + "\"; allowed: , or ; or | or tab or blank");
 }
 
-std::optional<tools::csv::CsvUnit> speed_unit_named(const char* option, const std::string& text) {
+std::optional<tools::csv::Unit> speed_unit_named(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
   const auto unit = tools::csv::find_speed_unit(text);
   if (unit) return unit;
@@ -100,7 +100,7 @@ std::optional<tools::csv::CsvUnit> speed_unit_named(const char* option, const st
                   fmt::format("{}: is \"{}\"; allowed: m/s, km/h, kn, mph, ft/s, cm/s, 0.1 m/s", option, text));
 }
 
-tools::csv::CsvCondition condition_in(const std::string& text) {
+tools::csv::Condition condition_in(const std::string& text) {
   const auto sign = text.find('=');
   if (sign == std::string::npos || sign == 0) {
     throw ExitError(kExitUsage, "--where: is \"" + text + "\"; allowed: COLUMN=VALUE");
@@ -108,15 +108,15 @@ tools::csv::CsvCondition condition_in(const std::string& text) {
   return {text.substr(0, sign), text.substr(sign + 1)};
 }
 
-tools::csv::CsvImportOptions csv_options(const ImportOptions& options) {
-  tools::csv::CsvImportOptions csv = options.csv;
+tools::csv::ImportOptions csv_options(const ImportOptions& options) {
+  tools::csv::ImportOptions csv = options.csv;
   csv.delimiter = delimiter_named(options.delimiter);
   if (options.comment.size() > 1) throw ExitError(kExitUsage, "--comment: give one character, or \"\" for none");
   csv.comment = options.comment.empty() ? '\0' : options.comment[0];
   csv.unit = speed_unit_named("--unit", options.unit);
   csv.gust_unit = speed_unit_named("--gust-unit", options.gust_unit);
   if (!options.zone.empty()) {
-    const auto zone = tools::csv::CsvZone::parse(options.zone);
+    const auto zone = tools::csv::Zone::parse(options.zone);
     if (!zone) throw ExitError(kExitUsage, "--zone: " + zone.error().message);
     csv.zone = *zone;
   }
@@ -126,7 +126,7 @@ tools::csv::CsvImportOptions csv_options(const ImportOptions& options) {
   return csv;
 }
 
-tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools::csv::CsvImportOptions& csv) {
+tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools::csv::ImportOptions& csv) {
   tools::csv::LineLogOptions log;
   log.time_format = csv.time_format;
   log.zone = csv.zone;
@@ -135,18 +135,18 @@ tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools
   log.sentence = options.sentence;
   if (options.interval_s > 0.0) log.interval = from_seconds(options.interval_s);
   if (options.start.empty()) return log;
-  const auto start = tools::csv::parse_time(options.start, tools::csv::CsvTimeFormat::kIso);
+  const auto start = tools::csv::parse_time(options.start, tools::csv::TimeFormat::kIso);
   if (!start) throw ExitError(kExitUsage, "--start: is \"" + options.start + "\"; allowed: 2023-06-25T22:00:00Z");
   log.start = start->clock - start->utc_offset.value_or(Nanoseconds{0});
   return log;
 }
 
 /// Imports it as a table or as a log, by its first lines.
-Result<tools::csv::CsvImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
-                                                        const tools::csv::CsvSinks& sinks) {
-  const tools::csv::CsvImportOptions csv = csv_options(options);
+Result<tools::csv::ImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
+                                                     const tools::csv::Sinks& sinks) {
+  const tools::csv::ImportOptions csv = csv_options(options);
   const tools::csv::LineLogOptions log = log_options(options, csv);
-  tools::csv::CsvInput input(in);
+  tools::csv::Input input(in);
   Format format = options.format;
   if (format == Format::kAuto) {
     const auto lines = tools::csv::first_lines(input, options.input);
@@ -163,7 +163,7 @@ class Target {
   Target(const std::filesystem::path& file, std::string configuration)
       : writer_(open(file)), configuration_(std::move(configuration)), is_watched_(isatty(STDERR_FILENO) != 0) {}
 
-  void take(std::string_view sensor, const wind::WindReading& reading) {
+  void take(std::string_view sensor, const wind::Reading& reading) {
     if (count_ == 0) must(writer_.begin_session({reading.time, with_version("yuragi"), configuration_}));
     auto known = sensors_.find(sensor);
     if (known == sensors_.end()) {
@@ -196,8 +196,8 @@ class Target {
   }
 
  private:
-  static drivers::windlog::WindlogWriter open(const std::filesystem::path& file) {
-    auto writer = drivers::windlog::WindlogWriter::open(file);
+  static drivers::windlog::Writer open(const std::filesystem::path& file) {
+    auto writer = drivers::windlog::Writer::open(file);
     if (!writer) throw ExitError(kExitCannotCreate, writer.error().message);
     return std::move(*writer);
   }
@@ -206,7 +206,7 @@ class Target {
     if (!done) throw ExitError(kExitCannotCreate, done.error().message);
   }
 
-  drivers::windlog::WindlogWriter writer_;
+  drivers::windlog::Writer writer_;
   std::string configuration_;
   bool is_watched_;
   bool has_shown_ = false;
@@ -216,7 +216,7 @@ class Target {
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };
 
-void print_report(const ImportOptions& options, const tools::csv::CsvImportReport& report) {
+void print_report(const ImportOptions& options, const tools::csv::ImportReport& report) {
   for (const std::string& line : report.columns) fmt::print("  {}\n", line);
   for (const std::string& line : report.notes) fmt::print("  {}\n", line);
   for (const std::string& line : report.first_refusals) fmt::print(stderr, "left out: {}\n", line);
@@ -243,12 +243,11 @@ void run_import(const ImportOptions& options) {
   const auto lock = lock_recording(options.output);
   platform::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
-  const auto report =
-      import_any(options, is_standard_input ? std::cin : file,
-                 {.reading = [&target](std::string_view sensor,
-                                       const wind::WindReading& reading) { target.take(sensor, reading); },
-                  .quantities = [&target](std::string_view,
-                                          const wind::StationQuantities& quantities) { target.take(quantities); }});
+  const auto report = import_any(
+      options, is_standard_input ? std::cin : file,
+      {.reading = [&target](std::string_view sensor, const wind::Reading& reading) { target.take(sensor, reading); },
+       .quantities = [&target](std::string_view,
+                               const wind::StationQuantities& quantities) { target.take(quantities); }});
   if (!report) throw ExitError(kExitDataError, report.error().message);
   if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
   target.close();
@@ -274,28 +273,28 @@ void add_import(CLI::App& app) {
       ->transform(CLI::CheckedTransformer(kFormats))
       ->option_text("auto|csv|log");
 
-  const auto add_column = [&](const char* flag, tools::csv::CsvRole role, const char* help) {
+  const auto add_column = [&](const char* flag, tools::csv::Role role, const char* help) {
     command->add_option(flag, options->csv.columns[static_cast<std::size_t>(role)], help)->type_name("COLUMN");
   };
-  add_column("--time", tools::csv::CsvRole::kTime, "the column of times");
-  add_column("--date", tools::csv::CsvRole::kDate, "the column of dates, if --time has none");
-  add_column("--speed", tools::csv::CsvRole::kSpeed, "the column of wind speeds");
-  add_column("--direction", tools::csv::CsvRole::kDirection, "the column of directions");
-  add_column("--gust", tools::csv::CsvRole::kGust, "the column of gusts");
-  add_column("--u", tools::csv::CsvRole::kU, "the column of the eastward component");
-  add_column("--v", tools::csv::CsvRole::kV, "the column of the northward component");
-  add_column("--w", tools::csv::CsvRole::kVerticalSpeed, "the column of the upward component");
-  add_column("--temperature", tools::csv::CsvRole::kTemperature, "the column of air temperatures");
-  add_column("--pressure", tools::csv::CsvRole::kPressure, "the column of air pressures");
-  add_column("--humidity", tools::csv::CsvRole::kHumidity, "the column of relative humidities");
+  add_column("--time", tools::csv::Role::kTime, "the column of times");
+  add_column("--date", tools::csv::Role::kDate, "the column of dates, if --time has none");
+  add_column("--speed", tools::csv::Role::kSpeed, "the column of wind speeds");
+  add_column("--direction", tools::csv::Role::kDirection, "the column of directions");
+  add_column("--gust", tools::csv::Role::kGust, "the column of gusts");
+  add_column("--u", tools::csv::Role::kU, "the column of the eastward component");
+  add_column("--v", tools::csv::Role::kV, "the column of the northward component");
+  add_column("--w", tools::csv::Role::kVerticalSpeed, "the column of the upward component");
+  add_column("--temperature", tools::csv::Role::kTemperature, "the column of air temperatures");
+  add_column("--pressure", tools::csv::Role::kPressure, "the column of air pressures");
+  add_column("--humidity", tools::csv::Role::kHumidity, "the column of relative humidities");
   command->add_flag("--uv-from", options->csv.components_are_from, "u and v point toward where the wind comes from");
 
-  static const std::map<std::string, tools::csv::CsvTimeFormat> kTimeFormats = {
-      {"auto", tools::csv::CsvTimeFormat::kAuto},          {"iso", tools::csv::CsvTimeFormat::kIso},
-      {"day-first", tools::csv::CsvTimeFormat::kDayFirst}, {"month-first", tools::csv::CsvTimeFormat::kMonthFirst},
-      {"compact", tools::csv::CsvTimeFormat::kCompact},    {"unix", tools::csv::CsvTimeFormat::kUnix},
-      {"unix-ms", tools::csv::CsvTimeFormat::kUnixMs},     {"unix-us", tools::csv::CsvTimeFormat::kUnixUs},
-      {"unix-ns", tools::csv::CsvTimeFormat::kUnixNs},     {"seconds", tools::csv::CsvTimeFormat::kSeconds}};
+  static const std::map<std::string, tools::csv::TimeFormat> kTimeFormats = {
+      {"auto", tools::csv::TimeFormat::kAuto},          {"iso", tools::csv::TimeFormat::kIso},
+      {"day-first", tools::csv::TimeFormat::kDayFirst}, {"month-first", tools::csv::TimeFormat::kMonthFirst},
+      {"compact", tools::csv::TimeFormat::kCompact},    {"unix", tools::csv::TimeFormat::kUnix},
+      {"unix-ms", tools::csv::TimeFormat::kUnixMs},     {"unix-us", tools::csv::TimeFormat::kUnixUs},
+      {"unix-ns", tools::csv::TimeFormat::kUnixNs},     {"seconds", tools::csv::TimeFormat::kSeconds}};
   command
       ->add_option("--time-format", options->csv.time_format,
                    "format of the times; auto: by all rows; compact: YYYYMMDDHH and so on")
@@ -314,10 +313,10 @@ void add_import(CLI::App& app) {
                    "whether directions are where the wind comes from, or blows to")
       ->transform(CLI::CheckedTransformer(kConventions))
       ->option_text("from|toward");
-  static const std::map<std::string, tools::csv::CsvDirectionUnit> kDirectionUnits = {
-      {"deg", tools::csv::CsvDirectionUnit::kDegrees},
-      {"rad", tools::csv::CsvDirectionUnit::kRadians},
-      {"point16", tools::csv::CsvDirectionUnit::kPoint16}};
+  static const std::map<std::string, tools::csv::DirectionUnit> kDirectionUnits = {
+      {"deg", tools::csv::DirectionUnit::kDegrees},
+      {"rad", tools::csv::DirectionUnit::kRadians},
+      {"point16", tools::csv::DirectionUnit::kPoint16}};
   command->add_option("--direction-unit", options->csv.direction_unit, "point16: 0 to 15, clockwise from north")
       ->transform(CLI::CheckedTransformer(kDirectionUnits))
       ->option_text("deg|rad|point16");

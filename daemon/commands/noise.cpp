@@ -50,7 +50,7 @@ constexpr const char* kNoiseFooter =
 
 struct NoiseOptions {
   int dims = 2;
-  noise::NoiseSpec spec{.size = 512};
+  noise::Spec spec{.size = 512};
   std::string meaning = "transect";
   std::string out;
 };
@@ -65,17 +65,17 @@ std::string check_whole_number(const std::string& text) {
 }
 
 /// The options that an error is about, as given.
-std::string blamed_option(int dims, const noise::NoiseSpec& spec, noise::NoiseError error) {
+std::string blamed_option(int dims, const noise::Spec& spec, noise::Error error) {
   switch (error) {
-    case noise::NoiseError::kSizeNotAllowed:
+    case noise::Error::kSizeNotAllowed:
       return fmt::format("--size {}", spec.size);
-    case noise::NoiseError::kBetaOutOfRange:
+    case noise::Error::kBetaOutOfRange:
       return fmt::format("--beta {}", spec.beta);
-    case noise::NoiseError::kTransectTooFlat:
+    case noise::Error::kTransectTooFlat:
       return fmt::format("--dims {} --meaning transect --beta {}", dims, spec.beta);
-    case noise::NoiseError::kIntegralScaleOutOfRange:
+    case noise::Error::kIntegralScaleOutOfRange:
       return fmt::format("--integral-scale {}", spec.integral_scale);
-    case noise::NoiseError::kBandOutOfRange:
+    case noise::Error::kBandOutOfRange:
       break;  // no option sets it
   }
   return "?";
@@ -83,7 +83,7 @@ std::string blamed_option(int dims, const noise::NoiseSpec& spec, noise::NoiseEr
 
 /// The values of the tile. Throws ExitError, which names the wrong options and what is allowed.
 std::vector<float> make_values(const NoiseOptions& options) {
-  const auto refuse = [&](noise::NoiseError error) {
+  const auto refuse = [&](noise::Error error) {
     return ExitError(kExitUsage,
                      fmt::format("{}: {}", blamed_option(options.dims, options.spec, error), explain(error)));
   };

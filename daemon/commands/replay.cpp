@@ -174,7 +174,7 @@ void replay_at_full_speed(const ReplayOptions& options) {
 
 void replay(const ReplayOptions& options) {
   const service::DaemonLog log(options.run.verbose);
-  if (const auto reader = drivers::windlog::WindlogReader::open(options.file)) {
+  if (const auto reader = drivers::windlog::Reader::open(options.file)) {
     for (const std::string& damage : reader->damage()) spdlog::warn("{}", damage);
   }
   if (options.is_to_stdout && options.rate != "max") {
@@ -190,7 +190,7 @@ void replay(const ReplayOptions& options) {
         .run();
     return;
   }
-  drivers::windlog::WindlogPlayback::open(options.file, options.playback)
+  drivers::windlog::Playback::open(options.file, options.playback)
       .value();  // fails now; the daemon would wait for the file
   if (options.rate == "max") return replay_at_full_speed(options);
 

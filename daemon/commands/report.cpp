@@ -25,7 +25,7 @@
 #include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/platform/whole_file.hpp"
-#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/source_estimator.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
 namespace yuragi::daemon::commands {
@@ -63,7 +63,7 @@ struct ReportOptions {
 };
 
 /// The log time of --from or --to; the end if it is after that.
-Nanoseconds moment_of(drivers::windlog::WindlogReader& reader, const std::string& option, const std::string& text) {
+Nanoseconds moment_of(drivers::windlog::Reader& reader, const std::string& option, const std::string& text) {
   const auto moment = drivers::windlog::parse_log_moment(text);
   if (!moment) throw ExitError(kExitUsage, option + ": " + moment.error().message);
   const auto log_time = drivers::windlog::log_time_of(reader, *moment);
@@ -98,8 +98,8 @@ class ProgressLine {
 };
 
 /// The prior of a sensor's gusts: from --height, or from the calibration of the sensor of this name.
-wind::turbulence::TurbulencePrior prior_of(const settings::Config& config, double height_m, const std::string& name) {
-  wind::blend::BlendSourceSettings source;
+wind::turbulence::Prior prior_of(const settings::Config& config, double height_m, const std::string& name) {
+  wind::blend::SourceSettings source;
   if (height_m == 0.0 && !config.wind.default_length_m) {
     for (const settings::SensorConfig& sensor : config.sensors) {
       if (sensor.name == name) height_m = sensor.heights.sensor_m.value_or(0.0);
@@ -125,7 +125,7 @@ void print_site(const tools::report::SensorNumbers& sensor) {
 }
 
 void run_report(const ReportOptions& options) {
-  auto reader = drivers::windlog::WindlogReader::open(options.input);
+  auto reader = drivers::windlog::Reader::open(options.input);
   if (!reader) {
     const bool is_there = drivers::windlog::recording_exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
@@ -142,7 +142,7 @@ void run_report(const ReportOptions& options) {
 
   const settings::Config config =
       options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
-  tools::report::ReportSettings settings;
+  tools::report::Settings settings;
   settings.sensors = options.sensors;
   settings.stale_intervals = config.wind.stale_intervals;
   settings.utc_offset = tools::report::local_offset;

@@ -33,12 +33,12 @@ void run_daemon(const RunOptions& options, const std::optional<std::filesystem::
   const service::DaemonLog log(options.verbose);
   const settings::Config config = config_with_warnings(options);
   log.set_level(config.log.level);
-  service::ServiceOptions service{.record = record ? record : config.recording.file,
-                                  .duration_s = options.duration_s,
-                                  .with_scenes = with_scenes,
-                                  .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); },
-                                  .log_tail = log.tail(),
-                                  .fault_counter = service::DaemonLog::fault_counter()};
+  service::Options service{.record = record ? record : config.recording.file,
+                           .duration_s = options.duration_s,
+                           .with_scenes = with_scenes,
+                           .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); },
+                           .log_tail = log.tail(),
+                           .fault_counter = service::DaemonLog::fault_counter()};
   if (options.config_file) {
     service.config_file = *options.config_file;
     service.read_config = [options] { return config_with_warnings(options); };

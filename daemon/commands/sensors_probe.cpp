@@ -96,7 +96,7 @@ std::vector<std::uint8_t> usual_ids(const std::vector<drivers::modbus::NamedModb
 
 /// "9600 8N1", or nothing over TCP.
 std::string settings_of(const drivers::bus::ModbusLine& line) {
-  if (line.framing == drivers::decode::modbus::ModbusFraming::kTcp) return "";
+  if (line.framing == drivers::decode::modbus::Framing::kTcp) return "";
   return fmt::format(", {} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
@@ -122,8 +122,8 @@ std::string stable_name(const std::string& device) {
   return device;
 }
 
-drivers::modbus::ModbusProbePlan plan_of(const ProbeOptions& options) {
-  drivers::modbus::ModbusProbePlan plan;
+drivers::modbus::ProbePlan plan_of(const ProbeOptions& options) {
+  drivers::modbus::ProbePlan plan;
   plan.profiles = drivers::modbus::shipped_modbus_profiles(options.profile_dir);
   plan.ids = options.ids.empty() ? usual_ids(plan.profiles) : ids_of(options.ids);
   plan.response_timeout = from_seconds(options.timeout_s);
@@ -158,7 +158,7 @@ void end_progress() {
 }
 
 /// Prints a fit as a comment of a TOML file.
-void show_fit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusFit& fit) {
+void show_fit(const drivers::modbus::Hit& hit, const drivers::modbus::Fit& fit) {
   if (!fit.speed_m_s) {
     fmt::print("#   may be the vane of {} ({:.0f} degrees): in its table, set direction_slave = {}\n", fit.profile,
                fit.direction_deg.value_or(0.0), hit.id);
@@ -186,14 +186,14 @@ std::string unused_name(int id, std::set<std::string>& used) {
 }
 
 /// Prints a device as a part of a configuration: its [[sensor]] table by the best fit, and everything else as comments.
-void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusProbePlan& plan,
+void show_hit(const drivers::modbus::Hit& hit, const drivers::modbus::ProbePlan& plan,
               std::set<std::string>& used_names) {
   end_progress();
   fmt::print("# slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
   if (hit.fits.empty()) {
     fmt::print("#   no profile fits; drivers/modbus/profiles/README.md describes how to write one\n");
   }
-  for (const drivers::modbus::ModbusFit& fit : hit.fits) show_fit(hit, fit);
+  for (const drivers::modbus::Fit& fit : hit.fits) show_fit(hit, fit);
   if (hit.fits.size() > 1) {
     fmt::print("#   Several devices have these registers: choose the one with the name of your device.\n");
   }
@@ -204,7 +204,7 @@ void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::Modb
         fmt::join(hit.scale_doubts, " and "));
   }
   const auto best =
-      std::ranges::find_if(hit.fits, [](const drivers::modbus::ModbusFit& fit) { return fit.speed_m_s.has_value(); });
+      std::ranges::find_if(hit.fits, [](const drivers::modbus::Fit& fit) { return fit.speed_m_s.has_value(); });
   if (best != hit.fits.end()) {
     const auto named = std::ranges::find(plan.profiles, best->profile, &drivers::modbus::NamedModbusProfile::name);
     fmt::print("{}", drivers::modbus::sensor_table_for(unused_name(hit.id, used_names), hit.line, *best, named->profile,
@@ -218,10 +218,10 @@ void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::Modb
 }
 
 /// On a line of its own as soon as it is found.
-void show_hit_as_json(const drivers::modbus::ModbusHit& hit) {
-  const bool is_tcp = hit.line.framing == drivers::decode::modbus::ModbusFraming::kTcp;
+void show_hit_as_json(const drivers::modbus::Hit& hit) {
+  const bool is_tcp = hit.line.framing == drivers::decode::modbus::Framing::kTcp;
   nlohmann::ordered_json fits = nlohmann::ordered_json::array();
-  for (const drivers::modbus::ModbusFit& fit : hit.fits) {
+  for (const drivers::modbus::Fit& fit : hit.fits) {
     nlohmann::ordered_json agrees = nullptr;
     if (fit.verdict != drivers::modbus::ForceVerdict::kNone)
       agrees = fit.verdict == drivers::modbus::ForceVerdict::kAgrees;
@@ -252,13 +252,13 @@ void show_hit_as_json(const drivers::modbus::ModbusHit& hit) {
 }
 
 void probe(const ProbeOptions& options) {
-  const drivers::modbus::ModbusProbePlan plan = plan_of(options);
+  const drivers::modbus::ProbePlan plan = plan_of(options);
   if (plan.lines.empty()) throw ExitError(kExitUsage, "--baud and --parity leave nothing to try");
   const WakeOnInterrupt interrupt;
   std::set<std::string> used_names;
   const auto hits = drivers::modbus::probe_modbus(
       plan, show_progress,
-      [&](const drivers::modbus::ModbusHit& hit) {
+      [&](const drivers::modbus::Hit& hit) {
         options.as_json ? show_hit_as_json(hit) : show_hit(hit, plan, used_names);
       },
       interrupt.interruption());

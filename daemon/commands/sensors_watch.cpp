@@ -133,7 +133,7 @@ class RawScreen final : public Screen {
   bool is_begun_ = false;
 };
 
-void watch_daemon(stream::StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
+void watch_daemon(stream::Client client, const std::string& address, const Deadline& deadline, Screen& screen) {
   const std::string source = "daemon at " + address;
   wire::Subscribe subscription = screen.subscription();
   subscription.token = settings::own_token(address).token;
@@ -196,7 +196,7 @@ void watch(const WatchOptions& options) {
     screen = std::make_unique<TableScreen>(options.once, options.as_json);
   }
   const Deadline deadline(options.run.duration_s);
-  auto client = stream::StreamClient::connect(address, kConnectTimeout);
+  auto client = stream::Client::connect(address, kConnectTimeout);
   if (client) {
     watch_daemon(std::move(*client), address, deadline, *screen);
   } else {

@@ -60,9 +60,9 @@ std::vector<std::string> words(const std::array<std::string_view, N>& names) {
 }
 
 void draw_spectrum(const SpectrumOptions& options, const wind::turbulence::WindSpectrum& spectrum) {
-  tools::plot::PlotCurve curve{
-      .title = options.model + " " + options.component, .style = tools::plot::PlotStyle::kLine, .x = {}, .y = {}};
-  tools::plot::PlotCurve asked{.title = "asked for", .style = tools::plot::PlotStyle::kPoints, .x = {}, .y = {}};
+  tools::plot::Curve curve{
+      .title = options.model + " " + options.component, .style = tools::plot::Style::kLine, .x = {}, .y = {}};
+  tools::plot::Curve asked{.title = "asked for", .style = tools::plot::Style::kPoints, .x = {}, .y = {}};
   double from_hz = 1e-3;
   double to_hz = 10.0;
   for (const double f : options.frequencies_hz) {
@@ -78,15 +78,14 @@ void draw_spectrum(const SpectrumOptions& options, const wind::turbulence::WindS
     curve.x.push_back(f);
     curve.y.push_back(f * spectrum.density_m2_s2_hz(f));
   }
-  const tools::plot::PlotPanel panel{
-      .title = fmt::format("{} spectrum of {}, {:g} m/s at {:g} m: variance {:.3g} m^2/s^2", options.model,
-                           options.component, options.settings.speed_m_s, options.settings.height_m,
-                           spectrum.variance_m2_s2()),
-      .x_label = "frequency f, Hz",
-      .y_label = "f S(f), m^2/s^2",
-      .is_x_log = true,
-      .is_y_log = true,
-      .curves = asked.x.empty() ? std::vector{curve} : std::vector{curve, asked}};
+  const tools::plot::Panel panel{.title = fmt::format("{} spectrum of {}, {:g} m/s at {:g} m: variance {:.3g} m^2/s^2",
+                                                      options.model, options.component, options.settings.speed_m_s,
+                                                      options.settings.height_m, spectrum.variance_m2_s2()),
+                                 .x_label = "frequency f, Hz",
+                                 .y_label = "f S(f), m^2/s^2",
+                                 .is_x_log = true,
+                                 .is_y_log = true,
+                                 .curves = asked.x.empty() ? std::vector{curve} : std::vector{curve, asked}};
   tools::plot::draw_plot(options.plot, std::span(&panel, 1)).value();
 }
 

@@ -77,7 +77,7 @@ struct GroundPlace {
 struct WindOptions {
   std::filesystem::path file;
   std::string output;
-  tools::offline::OfflineWindOptions offline;
+  tools::offline::WindOptions offline;
   std::vector<std::string> gaps;
   double scene_size_m = 0.0;
   std::vector<std::string> places;
@@ -103,7 +103,7 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 }
 
 /// "FROM,TO" in seconds.
-tools::offline::OfflineGap parse_gap(const std::string& text) {
+tools::offline::Gap parse_gap(const std::string& text) {
   const auto gap = two_numbers(text);
   if (!gap || !(gap->first >= 0.0) || !(gap->second > gap->first)) {
     throw ExitError(kExitUsage, "--gap: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
@@ -129,13 +129,13 @@ const std::filesystem::path& existing(const std::filesystem::path& file) {
   return file;
 }
 
-std::string_view name_of(wind::WindSource source) {
+std::string_view name_of(wind::Source source) {
   switch (source) {
-    case wind::WindSource::kDefault:
+    case wind::Source::kDefault:
       return "default";
-    case wind::WindSource::kHandover:
+    case wind::Source::kHandover:
       return "handover";
-    case wind::WindSource::kLive:
+    case wind::Source::kLive:
       return "live";
   }
   return "?";
@@ -157,7 +157,7 @@ class Table {
     text_ += '\n';
   }
 
-  void add(double time_s, const wind::WindState& state, std::span<const wind::WindVector> at_places) {
+  void add(double time_s, const wind::State& state, std::span<const wind::Vector> at_places) {
     // Just west of north is rounded to 0, not to 360.
     const double direction_deg = std::fmod(std::round(wind::direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
     add_number(time_s, 6);
@@ -165,7 +165,7 @@ class Table {
     add_cell(direction_deg, 4);
     add_cell(state.live_weight, 4);
     text_.append(1, ',').append(name_of(state.source));
-    for (const wind::WindVector wind : at_places) {
+    for (const wind::Vector wind : at_places) {
       add_cell(wind.u_m_s, 6);
       add_cell(wind.v_m_s, 6);
     }
@@ -211,8 +211,8 @@ class WindAtPlaces {
 
   std::span<const GroundPlace> places() const { return places_; }
 
-  std::span<const wind::WindVector> read(const wind::ground::DrivingWind& wind) {
-    const wind::ground::GroundWind ground = written_to(tapes_, wind);
+  std::span<const wind::Vector> read(const wind::ground::DrivingWind& wind) {
+    const wind::ground::Wind ground = written_to(tapes_, wind);
     std::ranges::transform(places_, winds_.begin(),
                            [&](const GroundPlace& place) { return ground.at(*gusts_, place.east_m, place.south_m); });
     return winds_;
@@ -221,7 +221,7 @@ class WindAtPlaces {
  private:
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   std::vector<GroundPlace> places_;
-  std::vector<wind::WindVector> winds_;
+  std::vector<wind::Vector> winds_;
   wind::ground::WindTapes tapes_;
 };
 
@@ -239,7 +239,7 @@ PlacedRecording parse_also(const std::string& text) {
   return {text.substr(0, at), parse_place("--also", text.substr(at + 1))};
 }
 
-void stand_at(wind::blend::BlendSourceSettings& source, const GroundPlace& place, double lead_m) {
+void stand_at(wind::blend::SourceSettings& source, const GroundPlace& place, double lead_m) {
   source.has_place = true;
   source.east_m = place.east_m;
   source.south_m = place.south_m;
@@ -248,8 +248,8 @@ void stand_at(wind::blend::BlendSourceSettings& source, const GroundPlace& place
 
 /// Sets what the speeds of a recording are: by the configuration or --value, otherwise by the driver that recorded
 /// them. Those of a simulated slower sensor are means.
-void set_recorded_value(wind::blend::BlendSourceSettings& source, const WindOptions& options,
-                        const settings::Config& config, const std::filesystem::path& file) {
+void set_recorded_value(wind::blend::SourceSettings& source, const WindOptions& options, const settings::Config& config,
+                        const std::filesystem::path& file) {
   const drivers::sensor::StatedValue value = settings::sensor_value_of(
       config.sensors[0].by_name.at(settings::kBlendTable),
       options.offline.sensor_interval_s ? drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean}
@@ -263,7 +263,7 @@ void set_recorded_value(wind::blend::BlendSourceSettings& source, const WindOpti
 }
 
 void write_wind(const WindOptions& options, const settings::Config& config, std::FILE* out) {
-  wind::blend::BlendSettings settings = sensing::blend_settings_of(config);
+  wind::blend::Settings settings = sensing::blend_settings_of(config);
   settings.sources.resize(1);
   settings.reach_m = options.scene_size_m / std::numbers::sqrt2;
   settings.rate_hz = options.offline.rate_hz;
@@ -271,14 +271,14 @@ void write_wind(const WindOptions& options, const settings::Config& config, std:
     stand_at(settings.sources[0], parse_place("--sensor-place", *options.sensor_place), options.lead_m);
   }
   set_recorded_value(settings.sources[0], options, config, options.file);
-  std::vector<drivers::windlog::WindlogPlayback> playbacks;
-  playbacks.push_back(drivers::windlog::WindlogPlayback::open(options.file, options.playback).value());
+  std::vector<drivers::windlog::Playback> playbacks;
+  playbacks.push_back(drivers::windlog::Playback::open(options.file, options.playback).value());
   if (!options.also.empty()) settings.sources[0].priority = 1;  // they are used together
   for (const std::string& text : options.also) {
     const PlacedRecording other = parse_also(text);
     stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
     set_recorded_value(settings.sources.back(), options, config, other.file);
-    playbacks.push_back(drivers::windlog::WindlogPlayback::open(other.file, options.playback).value());
+    playbacks.push_back(drivers::windlog::Playback::open(other.file, options.playback).value());
   }
   std::vector<GroundPlace> places;
   for (const std::string& text : options.places) places.push_back(parse_place("--place", text));
@@ -291,14 +291,14 @@ void write_wind(const WindOptions& options, const settings::Config& config, std:
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto shown_each = static_cast<std::uint64_t>(600.0 * options.offline.rate_hz);
   std::uint64_t states = 0;
-  const auto run = tools::offline::run_offline(
-      playbacks, estimator, options.offline, [&](double time_s, const wind::WindState& state) {
+  const auto run =
+      tools::offline::run_offline(playbacks, estimator, options.offline, [&](double time_s, const wind::State& state) {
         wind::ground::DrivingWind wind{state, estimator.ground(), estimator.stroke()};
         if (options.shaped) shaping.shape(wind, true);
         table.add(time_s, wind.state, at_places.read(wind));
         if (is_watched && ++states % shown_each == 0) fmt::print(stderr, "\r{:.0f} s of the recording", time_s);
       });
-  const tools::offline::OfflineWindResult& result = run.value();
+  const tools::offline::WindResult& result = run.value();
   table.end(options.output);
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(stderr, "{}: {} states of {:.1f} s, from {}{}\n",

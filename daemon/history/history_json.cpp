@@ -18,8 +18,8 @@ double rounded(double value) {
   return std::round(100.0 * value) / 100.0;
 }
 
-ordered_json direction_of(const HistoryStep& step) {
-  const wind::WindVector sum = step.vector_sum_m_s;
+ordered_json direction_of(const Step& step) {
+  const wind::Vector sum = step.vector_sum_m_s;
   if (wind::speed_of(sum) < kMinWind_m_s) return nullptr;
   return std::fmod(std::round(wind::direction_from_deg(sum)), 360.0);
 }
@@ -34,7 +34,7 @@ std::string history_json(const WindHistory& history) {
   for (const SensorHistory& sensor : history.sensors) {
     ordered_json& row = content["sensors"].emplace_back();
     row["name"] = sensor.name;
-    for (const HistoryStep& step : sensor.steps) {
+    for (const Step& step : sensor.steps) {
       const bool is_gap = step.readings == 0;
       row["min_m_s"].push_back(is_gap ? ordered_json() : ordered_json(rounded(step.min_m_s)));
       row["mean_m_s"].push_back(is_gap ? ordered_json() : ordered_json(rounded(step.mean_m_s())));

@@ -27,7 +27,7 @@ struct Kept {
 
 }  // namespace
 
-struct HistoryReader::Work {
+struct Reader::Work {
   Read read;
   Nanoseconds kept_for{0};
   std::stop_source stop{};
@@ -52,18 +52,18 @@ struct HistoryReader::Work {
   }
 };
 
-HistoryReader::HistoryReader(Read read, Nanoseconds kept_for) : work_(std::make_shared<Work>()) {
+Reader::Reader(Read read, Nanoseconds kept_for) : work_(std::make_shared<Work>()) {
   work_->read = std::move(read);
   work_->kept_for = kept_for;
 }
 
-HistoryReader::~HistoryReader() {
+Reader::~Reader() {
   work_->stop.request_stop();
   std::unique_lock lock(work_->mutex);
   work_->is_done.wait_for(lock, kMaxAtEnd, [this] { return !work_->is_reading; });
 }
 
-void HistoryReader::ask(unsigned hours, const Reply& reply) {
+void Reader::ask(unsigned hours, const Reply& reply) {
   std::optional<Result<std::string, Failure>> at_once;
   {
     const std::lock_guard lock(work_->mutex);

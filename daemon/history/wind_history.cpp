@@ -18,7 +18,7 @@ std::int64_t step_of(unsigned hours) {
   return enough == kLengths_s.end() ? kSecondsPerHour : *enough;
 }
 
-void add(HistoryStep& step, const wind::WindReading& reading) {
+void add(Step& step, const wind::Reading& reading) {
   const bool is_first = step.readings++ == 0;
   step.sum_m_s += reading.speed_m_s;
   step.min_m_s = is_first ? reading.speed_m_s : std::min(step.min_m_s, reading.speed_m_s);
@@ -32,7 +32,7 @@ SensorHistory* sensor_named(const std::string& name, WindHistory& history) {
   const auto found = std::ranges::find(history.sensors, name, &SensorHistory::name);
   if (found != history.sensors.end()) return &*found;
   if (history.sensors.size() == kMaxSensors) return nullptr;
-  history.sensors.push_back({name, std::vector<HistoryStep>(history.step_count)});
+  history.sensors.push_back({name, std::vector<Step>(history.step_count)});
   return &history.sensors.back();
 }
 
@@ -46,7 +46,7 @@ Result<WindHistory, Failure> read_wind_history(const std::filesystem::path& file
   history.begin_s = last_s - hours * kSecondsPerHour / history.step_s * history.step_s;
   history.step_count = static_cast<std::size_t>((last_s - history.begin_s) / history.step_s) + 1;
 
-  auto reader = drivers::windlog::WindlogReader::open(file, stop);
+  auto reader = drivers::windlog::Reader::open(file, stop);
   if (!reader) return reader.error();
   const auto begin = reader->log_time_of(UtcTime(std::chrono::seconds(history.begin_s)));
   if (!begin) return begin.error();
@@ -56,7 +56,7 @@ Result<WindHistory, Failure> read_wind_history(const std::filesystem::path& file
     const auto logged = reader->next();
     if (!logged) return logged.error();
     if (!*logged) return history;
-    const wind::WindReading& reading = (*logged)->reading;
+    const wind::Reading& reading = (*logged)->reading;
     const std::int64_t utc_s =
         std::chrono::floor<std::chrono::seconds>(reading.time.utc).time_since_epoch().count() - history.begin_s;
     const auto step = static_cast<std::size_t>(utc_s / history.step_s);

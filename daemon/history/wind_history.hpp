@@ -14,17 +14,17 @@
 namespace yuragi::daemon::history {
 
 /// What a sensor reported in one step of time, before calibration.
-struct HistoryStep {
+struct Step {
   std::uint64_t readings = 0;  ///< 0: a gap, in which nothing else is known
   double sum_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
-  wind::WindVector vector_sum_m_s = {};  ///< of the readings with a direction
+  wind::Vector vector_sum_m_s = {};  ///< of the readings with a direction
 
   double mean_m_s() const { return sum_m_s / static_cast<double>(readings); }
 };
 
 struct SensorHistory {
   std::string name;
-  std::vector<HistoryStep> steps;  ///< WindHistory::step_count of them
+  std::vector<Step> steps;  ///< WindHistory::step_count of them
 };
 
 /// The recorded wind of the last hours in steps of equal length.
@@ -42,7 +42,7 @@ inline constexpr std::size_t kMaxSensors = 16;
 inline constexpr unsigned kMaxHistory_h = 168;
 
 /// Reads the `hours` (1 to kMaxHistory_h) before `now` from a recording or a series of them, also while it is
-/// written. Sensors of the same name in several sessions are one. Fails as WindlogReader does; `stop` ends it within
+/// written. Sensors of the same name in several sessions are one. Fails as windlog::Reader does; `stop` ends it within
 /// milliseconds with a failure. Thread-safe: yes. Realtime-safe: no; waits for the disk.
 Result<WindHistory, Failure> read_wind_history(const std::filesystem::path& file, UtcTime now, unsigned hours,
                                                const std::stop_token& stop = {});

@@ -7,9 +7,9 @@
 
 namespace yuragi::daemon::recording {
 
-Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report,
-                   const RecorderLimits& limits, const settings::RecordingConfig& rules,
-                   const std::filesystem::path& synchronized_file, RecorderStart start)
+Recorder::Recorder(const std::filesystem::path& file, Info info, RecorderReport report, const RecorderLimits& limits,
+                   const settings::RecordingConfig& rules, const std::filesystem::path& synchronized_file,
+                   RecorderStart start)
     : limits_(limits),
       worker_(std::make_shared<RecorderWorker>(file, rules, std::move(info), std::move(report), limits,
                                                synchronized_file, start)),

@@ -33,8 +33,8 @@ class Recorder {
   /// (RecorderStatus::recorded_elsewhere). `rules`: when a new file is begun, and what is deleted; its `file` is not
   /// looked at. `synchronized_file`: for is_synchronized(). While the date of what is pushed is doubted (ClockJudge)
   /// age deletes nothing, and FILE-clock exists.
-  Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report = {},
-           const RecorderLimits& limits = {}, const settings::RecordingConfig& rules = {},
+  Recorder(const std::filesystem::path& file, Info info, RecorderReport report = {}, const RecorderLimits& limits = {},
+           const settings::RecordingConfig& rules = {},
            const std::filesystem::path& synchronized_file = kSynchronizedFile,
            RecorderStart start = RecorderStart::kMustOpen);
   ~Recorder();  ///< closes
@@ -44,7 +44,7 @@ class Recorder {
   /// Takes a reading of `info.sensors[sensor]`; false if it is dropped (and counted) because it cannot be recorded (no
   /// such sensor, values that are not finite) or too many wait. Call it from one thread. Realtime-safe: yes;
   /// wait-free.
-  bool push(std::size_t sensor, const wind::WindReading& reading) noexcept { return worker_->push(sensor, reading); }
+  bool push(std::size_t sensor, const wind::Reading& reading) noexcept { return worker_->push(sensor, reading); }
 
   /// Takes what the station of `info.sensors[sensor]` reports besides the wind; false if it is dropped (and counted)
   /// because too much waits. At most one row a sensor and second is written (drivers/windlog/format.hpp). As push()
@@ -56,7 +56,7 @@ class Recorder {
   /// What is pushed from now on belongs to a new session, with another configuration; the rules take effect at once.
   /// Nothing is lost by it. `info` has the same sensors in the same order. Call it on the thread that pushes.
   /// Thread-safe: as push(). Realtime-safe: no; waits for no disk.
-  void begin_session(RecordingInfo info, const settings::RecordingConfig& rules) {
+  void begin_session(Info info, const settings::RecordingConfig& rules) {
     worker_->begin_session(std::move(info), rules);
   }
 

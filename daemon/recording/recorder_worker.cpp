@@ -73,8 +73,8 @@ std::string since_text(UtcTime moment) {
 
 }  // namespace
 
-RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules,
-                               RecordingInfo info, RecorderReport report, const RecorderLimits& limits,
+RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, Info info,
+                               RecorderReport report, const RecorderLimits& limits,
                                std::filesystem::path synchronized_file, RecorderStart start)
     : file_(file),
       synchronized_file_(std::move(synchronized_file)),
@@ -130,7 +130,7 @@ Result<void, Failure> RecorderWorker::leave_what_is_recorded() {
   writer_.reset();
   const auto parts = drivers::windlog::completed_parts(file_);
   if (recorded && !*recorded && !parts.empty()) {  // it ended after completing a file and before beginning the next
-    auto part = drivers::windlog::WindlogWriter::open(parts.back().file);
+    auto part = drivers::windlog::Writer::open(parts.back().file);
     if (!part) return part.error();
     recorded = part->last_time();
   }
@@ -149,7 +149,7 @@ void RecorderWorker::leave_to_other(UtcTime until) {
                 [until](const QuantitiesEntry& entry) { return entry.quantities.time.utc <= until; });
 }
 
-bool RecorderWorker::push(std::size_t sensor, const wind::WindReading& reading) noexcept {
+bool RecorderWorker::push(std::size_t sensor, const wind::Reading& reading) noexcept {
   push_marks();
   const bool taken =
       sensor < sensor_count_ && drivers::windlog::is_recordable(reading) && ring_.push({sensor, reading});
@@ -163,7 +163,7 @@ bool RecorderWorker::push(std::size_t sensor, const wind::StationQuantities& qua
   return taken;
 }
 
-void RecorderWorker::begin_session(RecordingInfo info, const settings::RecordingConfig& rules) {
+void RecorderWorker::begin_session(Info info, const settings::RecordingConfig& rules) {
   {
     const std::lock_guard lock(sessions_mutex_);
     next_sessions_.push_back(std::move(info));
@@ -542,7 +542,7 @@ Result<void, Failure> RecorderWorker::open_file() {
   if (!aside) return aside.error();
   if (*aside) report(file_.string() + " has an older format; it is kept as " + (*aside)->string());
   create_private_file(file_);
-  auto opened = drivers::windlog::WindlogWriter::open(file_);
+  auto opened = drivers::windlog::Writer::open(file_);
   if (!opened) return opened.error();
   const auto identity = drivers::windlog::identity_of(file_);
   if (!identity) return Failure{file_.string() + ": " + identity.error().message()};

@@ -36,7 +36,7 @@ struct RecordedSensor {
 };
 
 /// What a recording holds about the run that made it.
-struct RecordingInfo {
+struct Info {
   Instant started;
   std::string software;       ///< "yuragi 0.1.0"
   std::string configuration;  ///< TOML, as read
@@ -64,7 +64,7 @@ class RecorderWorker {
   static constexpr Nanoseconds kSaveDoubtEvery = std::chrono::minutes(1);
 
   /// As Recorder::Recorder().
-  RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, RecordingInfo info,
+  RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, Info info,
                  RecorderReport report, const RecorderLimits& limits, std::filesystem::path synchronized_file,
                  RecorderStart start);
 
@@ -72,11 +72,11 @@ class RecorderWorker {
   void run(const std::stop_token& stop);
 
   /// As Recorder::push(). Realtime-safe: yes; wait-free.
-  bool push(std::size_t sensor, const wind::WindReading& reading) noexcept;
+  bool push(std::size_t sensor, const wind::Reading& reading) noexcept;
   bool push(std::size_t sensor, const wind::StationQuantities& quantities) noexcept;
 
   /// As Recorder::begin_session().
-  void begin_session(RecordingInfo info, const settings::RecordingConfig& rules);
+  void begin_session(Info info, const settings::RecordingConfig& rules);
 
   /// Thread-safe: yes. Realtime-safe: no.
   RecorderStatus status() const;
@@ -90,7 +90,7 @@ class RecorderWorker {
   /// A reading; or, with kNextSession in place of a sensor, the place between two where the next session begins.
   struct Entry {
     std::size_t sensor = 0;
-    wind::WindReading reading;
+    wind::Reading reading;
   };
   struct QuantitiesEntry {
     std::size_t sensor = 0;
@@ -138,7 +138,7 @@ class RecorderWorker {
   std::filesystem::path synchronized_file_;
   settings::RecordingConfig rules_;
   std::size_t sensor_count_;  ///< of every session; it never changes, so that push() may look at it
-  RecordingInfo info_;
+  Info info_;
   RecorderLimits limits_;
   SpscRing<Entry> ring_;
   SpscRing<QuantitiesEntry> quantities_ring_;
@@ -151,7 +151,7 @@ class RecorderWorker {
 
   std::size_t marks_due_ = 0;  ///< of the thread that pushes: sessions whose place is not in the ring yet
   std::mutex sessions_mutex_;
-  std::deque<RecordingInfo> next_sessions_;
+  std::deque<Info> next_sessions_;
   std::optional<settings::RecordingConfig> next_rules_;
 
   std::mutex report_mutex_;
@@ -172,7 +172,7 @@ class RecorderWorker {
   std::optional<drivers::windlog::SeriesLock> lock_;  ///< held while anything is opened, written or renamed
   bool was_held_elsewhere_ = false;  ///< the lock, so that what is pending may be in the recording already
   bool has_reported_no_locks_ = false;
-  std::optional<drivers::windlog::WindlogWriter> writer_;
+  std::optional<drivers::windlog::Writer> writer_;
   drivers::windlog::FileIdentity identity_;  ///< of the file that writer_ writes
   std::optional<UtcTime> began_;             ///< that file's first session, once it has readings or quantities
   std::vector<std::int64_t> sensor_ids_;

@@ -29,7 +29,7 @@ std::string check_fallback(const settings::FallbackConfig& fallback) {
     const std::string place = fallback.origin.empty() ? "" : fallback.origin + ": ";
     throw settings::ConfigError(place + "wind.fallback_recording: " + failure.message);
   };
-  auto cursor = drivers::windlog::WindlogCursor::open(fallback.recording, "");
+  auto cursor = drivers::windlog::Cursor::open(fallback.recording, "");
   if (!cursor) refuse(cursor.error());
   const auto first = cursor->next();
   if (!first) refuse(first.error());
@@ -73,9 +73,9 @@ void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
   if (!silent_since_) silent_since_ = now;
   if (!runner_ && now - *silent_since_ >= after_ && now >= retry_at_) start(now);
   if (!runner_) return;
-  runner_->drain([&](const wind::WindReading& raw) {
+  runner_->drain([&](const wind::Reading& raw) {
     ++readings_;
-    const wind::WindReading reading = calibration_.applied_to(raw);
+    const wind::Reading reading = calibration_.applied_to(raw);
     const bool is_judged = judged_by_ && reading.quality != wind::ReadingQuality::kSimulated;
     if (!is_judged || judge_.judge(reading)) use(reading);
   });

@@ -24,7 +24,7 @@ namespace yuragi::daemon::sensing {
 /// Belongs to the I/O thread; the file is read on a thread of its own, for whose end that one does not wait.
 class FallbackRecording {
  public:
-  using Use = std::function<void(const wind::WindReading&)>;
+  using Use = std::function<void(const wind::Reading&)>;
 
   /// Checks the recording, if one is configured. Throws ConfigError if it cannot be played.
   FallbackRecording(const settings::Config& config, const drivers::sensor::Clock& clock);

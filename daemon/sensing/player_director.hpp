@@ -16,8 +16,8 @@ namespace yuragi::daemon::sensing {
 /// A sensor that plays a recording.
 struct NamedPlayer {
   std::string sensor;
-  drivers::recording::RecordingPlayer* player = nullptr;  ///< must outlive the director
-  std::function<void()> wake;                             ///< makes its thread read orders at once
+  drivers::recording::Player* player = nullptr;  ///< must outlive the director
+  std::function<void()> wake;                    ///< makes its thread read orders at once
 };
 
 /// Handles clients' requests about recordings that play, on the I/O thread: checks the permission ([stream] control),

@@ -17,7 +17,6 @@ namespace yuragi::daemon::sensing {
 namespace {
 
 using drivers::windlog::LoggedSession;
-using drivers::windlog::WindlogReader;
 
 /// So many changes of the configuration are named in the log.
 constexpr std::size_t kMaxChangesNamed = 5;
@@ -25,7 +24,7 @@ constexpr std::size_t kMaxChangesNamed = 5;
 /// A sensor of the installation of which the recording has no reading.
 class SilentSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     if (!std::exchange(has_told_, true)) {
       sink.link(wind::LinkState::kFinished, "the recording has no reading of it");
     }
@@ -41,7 +40,7 @@ Failure of_recorded_data(const Failure& failure) {
   return {failure.message, failure.kind == FailureKind::kOther ? FailureKind::kBadData : failure.kind};
 }
 
-Result<Nanoseconds, Failure> begin_in(WindlogReader& reader, const std::string& start) {
+Result<Nanoseconds, Failure> begin_in(drivers::windlog::Reader& reader, const std::string& start) {
   const auto moment = drivers::windlog::parse_log_moment(start);
   if (!moment) return moment.error();
   const auto begin = drivers::windlog::log_time_of(reader, *moment);
@@ -55,7 +54,8 @@ Result<Nanoseconds, Failure> begin_in(WindlogReader& reader, const std::string& 
   return **begin;
 }
 
-Result<settings::Config, Failure> configuration_of(const WindlogReader& reader, const LoggedSession& session) {
+Result<settings::Config, Failure> configuration_of(const drivers::windlog::Reader& reader,
+                                                   const LoggedSession& session) {
   const std::string place = fmt::format("{}: configuration of session {}", reader.file().string(), session.id);
   const auto text = reader.configuration(session.id);
   if (!text) return of_recorded_data(text.error());
@@ -87,7 +87,7 @@ void leave_out_what_acts_outside(settings::Config& config, std::vector<std::stri
 }
 
 /// Returns true if this sensor has a reading from a log time on.
-Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
+Result<bool, Failure> speaks_after(drivers::windlog::Reader& reader, const std::string& sensor, Nanoseconds begin) {
   std::vector<bool> is_it;
   for (const auto& candidate : reader.sensors()) is_it.push_back(candidate.name == sensor);
   if (std::ranges::find(is_it, true) == is_it.end()) return false;
@@ -98,7 +98,8 @@ Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sen
 
 /// Returns a sentence for each time at which the recording comes to a configuration that is neither that of the first
 /// session nor the last one named.
-Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& reader, const LoggedSession& first) {
+Result<std::vector<std::string>, Failure> changes_after(const drivers::windlog::Reader& reader,
+                                                        const LoggedSession& first) {
   const auto replayed = reader.configuration(first.id);
   if (!replayed) return of_recorded_data(replayed.error());
   std::vector<std::string> sentences;
@@ -126,7 +127,7 @@ Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& rea
 
 Result<RecordedInstallation, Failure> recorded_installation(const std::filesystem::path& recording,
                                                             const drivers::windlog::PlayerOptions& options) {
-  auto reader = WindlogReader::open(recording);
+  auto reader = drivers::windlog::Reader::open(recording);
   if (!reader) return reader.error();
   const auto begin = begin_in(*reader, options.playback.start);
   if (!begin) return begin.error();

@@ -8,7 +8,7 @@ namespace yuragi::daemon::sensing {
 
 settings::RecordedSource recorded_source(const std::filesystem::path& recording, std::string_view sensor) {
   if (sensor == "*") return {};
-  auto cursor = drivers::windlog::WindlogCursor::open(recording, sensor);
+  auto cursor = drivers::windlog::Cursor::open(recording, sensor);
   if (!cursor) return {};
   const auto first = cursor->next();
   if (!first || !*first) return {};

@@ -48,7 +48,7 @@ std::string passed_over_text(const ChangeGate& gate) {
   return fmt::format("; {} short changes in between", gate.passed_over());
 }
 
-bool has(const wind::WindReading& reading, Quantity quantity) {
+bool has(const wind::Reading& reading, Quantity quantity) {
   return quantity == Quantity::kDirection ? reading.direction_deg.has_value() : reading.gust_m_s.has_value();
 }
 
@@ -81,19 +81,19 @@ std::shared_ptr<const wind::turbulence::GustNoise> make_gust_noise(const setting
   return noise;
 }
 
-wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
+wind::blend::Settings blend_settings_of(const settings::Config& config) {
   const settings::WindConfig& wind = config.wind;
-  wind::blend::BlendSettings settings{.climate = {.mean_speed_m_s = wind.default_speed_m_s,
-                                                  .mean_direction_deg = wind.default_direction_deg,
-                                                  .turbulence_intensity = wind.default_turbulence_intensity,
-                                                  .seed = config.seed},
-                                      .length_m = wind.gust_length_m(),
-                                      .gustiness = wind.gustiness,
-                                      .handover_s = wind.handover_s,
-                                      .stale_intervals = wind.stale_intervals,
-                                      .return_after_s = wind.return_after_s,
-                                      .rate_hz = config.animation.rate_hz,
-                                      .site = make_site_spectrum(wind)};
+  wind::blend::Settings settings{.climate = {.mean_speed_m_s = wind.default_speed_m_s,
+                                             .mean_direction_deg = wind.default_direction_deg,
+                                             .turbulence_intensity = wind.default_turbulence_intensity,
+                                             .seed = config.seed},
+                                 .length_m = wind.gust_length_m(),
+                                 .gustiness = wind.gustiness,
+                                 .handover_s = wind.handover_s,
+                                 .stale_intervals = wind.stale_intervals,
+                                 .return_after_s = wind.return_after_s,
+                                 .rate_hz = config.animation.rate_hz,
+                                 .site = make_site_spectrum(wind)};
   for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
   // After all sensors, independent of their priorities.
   if (wind.fallback) {
@@ -108,7 +108,7 @@ wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
 wind::blend::BlendedEstimator make_estimator(const settings::Config& config,
                                              std::shared_ptr<const wind::turbulence::GustNoise> noise, double reach_m,
                                              std::shared_ptr<wind::turbulence::SiteSpectrum> site) {
-  wind::blend::BlendSettings settings = blend_settings_of(config);
+  wind::blend::Settings settings = blend_settings_of(config);
   settings.reach_m = reach_m;
   if (site) settings.site = std::move(site);
   const std::size_t source_count = settings.sources.size();
@@ -151,7 +151,7 @@ void SensorHub::change(std::size_t index, const settings::SensorConfig& config) 
   Channel& channel = channels_[index];
   const settings::SensorConfig before = std::exchange(channel.config, config);
   if (before.by_name.at(settings::kCalibrationTable).all() != config.by_name.at(settings::kCalibrationTable).all()) {
-    std::optional<std::pair<wind::WindReading, wind::WindReading>> last;
+    std::optional<std::pair<wind::Reading, wind::Reading>> last;
     if (const auto& raw = channel.last_raw) {
       last.emplace(before.calibration.applied_to(*raw), config.calibration.applied_to(*raw));
     }
@@ -159,7 +159,7 @@ void SensorHub::change(std::size_t index, const settings::SensorConfig& config) 
   }
   jury_.change(index, live_rules_of(config));
 
-  drivers::recording::RecordingPlayer* const player = channel.runner->player();
+  drivers::recording::Player* const player = channel.runner->player();
   if (player == nullptr || !config.values.has("rate")) return;
   const double rate = config.values.number("rate");
   if (rate == before.values.number("rate")) return;
@@ -167,10 +167,10 @@ void SensorHub::change(std::size_t index, const settings::SensorConfig& config) 
   channel.runner->wake();
 }
 
-const wind::WindState& SensorHub::advance() {
+const wind::State& SensorHub::advance() {
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     Channel& channel = channels_[index];
-    channel.runner->drain([&](const wind::WindReading& reading) {
+    channel.runner->drain([&](const wind::Reading& reading) {
       if (!reading.is_held) {
         ++channel.readings;
         channel.last_raw = reading;
@@ -188,7 +188,7 @@ const wind::WindState& SensorHub::advance() {
   const MonoTime now = clock_.now().mono;
   jury_.compare(now);
   fallback_.advance(is_any_live(),
-                    [this](const wind::WindReading& reading) { estimator_.accept(channels_.size(), reading); });
+                    [this](const wind::Reading& reading) { estimator_.accept(channels_.size(), reading); });
   wind_ = estimator_.advance(now);
   for (std::size_t index = 0; index < channels_.size(); ++index) {
     log_link(channels_[index], now);
@@ -198,9 +198,9 @@ const wind::WindState& SensorHub::advance() {
 }
 
 /// Calibrates a raw reading, judges it, and passes it to the estimator if it is believed.
-void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
+void SensorHub::take(std::size_t index, const wind::Reading& raw) {
   Channel& channel = channels_[index];
-  wind::WindReading reading = channel.config.calibration.applied_to(raw);
+  wind::Reading reading = channel.config.calibration.applied_to(raw);
   // A time in the future would make all readings that follow late ones.
   reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
   switch (jury_.hear(index, reading)) {
@@ -352,7 +352,7 @@ std::vector<NamedPlayer> SensorHub::players() {
   std::vector<NamedPlayer> players;
   for (const Channel& channel : channels_) {
     SensorRunner& runner = *channel.runner;
-    drivers::recording::RecordingPlayer* const player = runner.player();
+    drivers::recording::Player* const player = runner.player();
     if (player != nullptr) players.push_back({channel.config.name, player, [&runner] { runner.wake(); }});
   }
   return players;

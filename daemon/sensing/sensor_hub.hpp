@@ -33,7 +33,7 @@ namespace yuragi::daemon::sensing {
 class SensorHub {
  public:
   /// Gets each plausible reading, before calibration; for the recorder.
-  using Listener = std::function<void(std::size_t sensor, const wind::WindReading&)>;
+  using Listener = std::function<void(std::size_t sensor, const wind::Reading&)>;
   /// Receives what a station reports besides the wind; for the recorder.
   using QuantitiesListener = std::function<void(std::size_t sensor, const wind::StationQuantities&)>;
 
@@ -58,14 +58,14 @@ class SensorHub {
   void set_reach(double reach_m) noexcept { estimator_.set_reach(reach_m); }
 
   /// Takes the readings that have arrived, and returns the wind now. Logs each change of a sensor's state once.
-  const wind::WindState& advance();
+  const wind::State& advance();
 
   /// Returns true if any sensor is live and believed. The fall-back recording does not count. As of the last advance().
   bool is_any_live() const;
 
   /// The wind as of the last advance().
-  const wind::WindState& wind() const noexcept { return wind_; }
-  const wind::ground::GroundWind& ground() const noexcept { return estimator_.ground(); }
+  const wind::State& wind() const noexcept { return wind_; }
+  const wind::ground::Wind& ground() const noexcept { return estimator_.ground(); }
   const wind::ground::WindStroke& stroke() const noexcept { return estimator_.stroke(); }
 
   /// What is known of the site's gusts; updated while a fast sensor of the site is live. Belongs to this thread.
@@ -113,12 +113,12 @@ class SensorHub {
     std::uint64_t link_reports = 0;
     ChangeGate link_gate{kNothingReported};
     ChangeGate state_gate{static_cast<std::uint32_t>(wind::judging::SensorState::kConnecting)};
-    std::optional<wind::WindReading> last_raw;                                                  ///< before calibration
+    std::optional<wind::Reading> last_raw;                                                      ///< before calibration
     std::array<wind::judging::QuantityWatch, wind::judging::kQuantityNames.size()> quantities;  ///< by Quantity
   };
 
   void change(std::size_t index, const settings::SensorConfig& config);
-  void take(std::size_t index, const wind::WindReading& reading);
+  void take(std::size_t index, const wind::Reading& reading);
   static SensorCounts counts_of(const Channel& channel);
   void judge_refusals(std::size_t index);
   SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
@@ -134,14 +134,14 @@ class SensorHub {
   SensorJury jury_;
   std::vector<Channel> channels_;
   FallbackRecording fallback_;  ///< the estimator's source behind those of the channels
-  wind::WindState wind_;
+  wind::State wind_;
 };
 
 /// The pattern of gusts of an installation: the estimator and the scenes share it. Set-up work of about 0.1 s.
 std::shared_ptr<const wind::turbulence::GustNoise> make_gust_noise(const settings::Config& config);
 
 /// The settings of the blend, with one source for each sensor, and one for the fall-back.
-wind::blend::BlendSettings blend_settings_of(const settings::Config& config);
+wind::blend::Settings blend_settings_of(const settings::Config& config);
 
 /// The estimator of a configuration, with one source for each sensor, and one for the fall-back. `reach_m`: from the
 /// middle of the scenes to the farthest place of any of them. `site`: the site's gusts, which the estimator updates;

@@ -30,7 +30,7 @@ SensorJury::SensorJury(const std::vector<JuryRules>& sensors, double stale_inter
   }
 }
 
-SensorJury::Verdict SensorJury::hear(std::size_t sensor, const wind::WindReading& reading) noexcept {
+SensorJury::Verdict SensorJury::hear(std::size_t sensor, const wind::Reading& reading) noexcept {
   Member& member = members_[sensor];
   if (!wind::is_plausible(reading)) {
     count_impossible(sensor, 1);
@@ -57,7 +57,7 @@ SensorJury::Verdict SensorJury::hear(std::size_t sensor, const wind::WindReading
   return member.is_last_believed ? Verdict::kBelieved : Verdict::kDoubted;
 }
 
-wind::WindReading SensorJury::levelled(std::size_t sensor, wind::WindReading reading) const noexcept {
+wind::Reading SensorJury::levelled(std::size_t sensor, wind::Reading reading) const noexcept {
   const double gain = members_[sensor].gain;
   if (gain == 1.0) return reading;
   reading.speed_m_s = std::min(gain * reading.speed_m_s, wind::kMaxPlausibleSpeed_m_s);
@@ -111,7 +111,7 @@ void SensorJury::change(std::size_t sensor, const JuryRules& rules) {
 }
 
 void SensorJury::recalibrate(std::size_t sensor,
-                             const std::optional<std::pair<wind::WindReading, wind::WindReading>>& last) noexcept {
+                             const std::optional<std::pair<wind::Reading, wind::Reading>>& last) noexcept {
   if (last) members_[sensor].judge.recalibrate(last->first, last->second);
   vote_.forget_mean(sensor);
   gains_.relearn(sensor);

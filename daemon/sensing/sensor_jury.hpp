@@ -19,7 +19,7 @@ namespace yuragi::daemon::sensing {
 struct JuryRules {
   std::optional<wind::judging::JudgeSettings> judge{};  ///< empty: all are believed
   bool is_compared = false;                             ///< with the other sensors
-  double unchanged_for_s = 0.0;                         ///< as BlendSourceSettings has it
+  double unchanged_for_s = 0.0;                         ///< as blend::SourceSettings has it
 };
 
 /// The rules of a configured sensor, or of a recording that is processed as its readings. One whose scale is unknown is
@@ -38,15 +38,15 @@ class SensorJury {
     kBelieved,  ///< it goes to the estimator
   };
 
-  /// `stale_intervals`: as BlendSettings has it. `is_levelling`: false: no sensor is levelled.
+  /// `stale_intervals`: as blend::Settings has it. `is_levelling`: false: no sensor is levelled.
   SensorJury(const std::vector<JuryRules>& sensors, double stale_intervals, bool is_levelling);
 
   /// Judges the next reading of a sensor, calibrated, and not of the future.
-  Verdict hear(std::size_t sensor, const wind::WindReading& reading) noexcept;
+  Verdict hear(std::size_t sensor, const wind::Reading& reading) noexcept;
 
   /// The reading that hear() has just been given, levelled: what goes to the estimator. The same bits if nothing was
   /// learnt. A repeated reading is levelled as it was the first time.
-  wind::WindReading levelled(std::size_t sensor, wind::WindReading reading) const noexcept;
+  wind::Reading levelled(std::size_t sensor, wind::Reading reading) const noexcept;
 
   /// Readings that were refused before they came here as impossible.
   void count_impossible(std::size_t sensor, std::uint64_t readings) noexcept;
@@ -59,8 +59,7 @@ class SensorJury {
 
   /// A sensor's calibration has changed. `last`: its last reading by the one before, and by the new one; none: it has
   /// sent none. How it differs from the others is learnt anew.
-  void recalibrate(std::size_t sensor,
-                   const std::optional<std::pair<wind::WindReading, wind::WindReading>>& last) noexcept;
+  void recalibrate(std::size_t sensor, const std::optional<std::pair<wind::Reading, wind::Reading>>& last) noexcept;
 
   const wind::judging::ReadingJudge& judge(std::size_t sensor) const noexcept { return members_[sensor].judge; }
   const wind::judging::SensorVote& vote() const noexcept { return vote_; }

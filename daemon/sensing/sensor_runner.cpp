@@ -66,7 +66,7 @@ void SensorRunner::wake() {
   wake_.notify_one();
 }
 
-void SensorRunner::reading(const wind::WindReading& reading) {
+void SensorRunner::reading(const wind::Reading& reading) {
   if (!wind::is_plausible(reading)) {
     refused(drivers::decode::Refusal::kImplausible);
   } else if (!readings_.push(reading)) {

@@ -24,7 +24,7 @@ struct LinkReport {
   std::string detail;
 };
 
-/// A message to or from a device, as passed to SensorSink::raw(), and its time.
+/// A message to or from a device, as passed to sensor::Sink::raw(), and its time.
 struct RawMessage {
   Instant time{};
   drivers::sensor::RawDirection direction = drivers::sensor::RawDirection::kReceived;
@@ -48,7 +48,7 @@ enum class SensorThread : std::uint8_t {
 /// them, so that no device delays that thread.
 ///
 /// Thread-safe: the public functions may be called from one other thread.
-class SensorRunner final : private drivers::sensor::SensorSink {
+class SensorRunner final : private drivers::sensor::Sink {
  public:
   SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock,
                SensorThread thread = SensorThread::kOwn);
@@ -92,9 +92,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   void wake();
 
   /// The sensor's controls, if it plays a recording; nullptr otherwise. They live as long as the runner.
-  drivers::recording::RecordingPlayer* player() noexcept {
-    return dynamic_cast<drivers::recording::RecordingPlayer*>(sensor_.get());
-  }
+  drivers::recording::Player* player() noexcept { return dynamic_cast<drivers::recording::Player*>(sensor_.get()); }
 
   LinkReport link() const;
   /// The number of reports of the link: a cheap check whether link() has changed.
@@ -118,7 +116,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
 
   void run(const std::stop_token& stop);
   MonoTime poll();
-  void reading(const wind::WindReading& reading) override;
+  void reading(const wind::Reading& reading) override;
   void quantities(const wind::StationQuantities& quantities) override;
   void refused(drivers::decode::Refusal why, std::uint64_t times = 1) override;
   void link(wind::LinkState state, std::string_view detail) override;
@@ -128,7 +126,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   const drivers::sensor::Clock& clock_;
   SensorThread thread_kind_;
   MonoTime next_poll_ = MonoTime::min();  ///< by the caller
-  SpscRing<wind::WindReading> readings_{kRingCapacity};
+  SpscRing<wind::Reading> readings_{kRingCapacity};
   SpscRing<wind::StationQuantities> quantities_{kQuantitiesCapacity};
   std::array<std::atomic<std::uint64_t>, drivers::decode::kRefusalCount> refused_{};
   std::atomic<std::uint64_t> lost_{0};

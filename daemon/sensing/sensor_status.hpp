@@ -29,8 +29,8 @@ struct SensorFacts {
   std::string_view name;
   std::string_view driver;
   SensorEvidence evidence;
-  std::string value{};                          ///< what its speed is, with the source, for a person
-  std::optional<wind::WindReading> last_raw{};  ///< before calibration
+  std::string value{};                      ///< what its speed is, with the source, for a person
+  std::optional<wind::Reading> last_raw{};  ///< before calibration
   SensorCounts counts{};
   std::vector<wire::QuantityStatus> quantities{};
 };

@@ -93,7 +93,7 @@ wire::Lateness lateness_of(const animation::RecentLateness& recent) {
 
 class Service::Io {
  public:
-  Io(const settings::Config& config, const ServiceOptions& options)
+  Io(const settings::Config& config, const Options& options)
       : options_(options),
         rate_hz_(config.animation.rate_hz),
         http_(config.http),
@@ -120,7 +120,7 @@ class Service::Io {
                      .restore = [this](const auto& learnt) { return hub_.restore_relative_gains(learnt); }},
            .reach = {.learnt = [this] { return hub_.gust_reach(); },
                      .restore = [this](const auto& learnt) { return hub_.restore_gust_reach(learnt); }}});
-      loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
+      loop_ = std::make_unique<animation::Loop>(*animation_, wind_, clock_, rate_hz_);
       recent_tick_lateness_.emplace(loop_->counters().lateness);
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
@@ -218,25 +218,23 @@ class Service::Io {
     return settings;
   }
 
-  web::WebSettings web_settings() {
-    web::WebSettings settings{.listen = http_.listen,
-                              .hosts = http_.hosts,
-                              .takes_token = takes_token_,
-                              .token = token_,
-                              .pairings_file = pairings_file(),
-                              .reading_takes_token = http_.reading_takes_token,
-                              .proxies = http_.proxies,
-                              .guide = web::installed_guide(),
-                              .software = with_version("yuragi"),
-                              .tick_rate_hz = rate_hz_};
+  web::Settings web_settings() {
+    web::Settings settings{.listen = http_.listen,
+                           .hosts = http_.hosts,
+                           .takes_token = takes_token_,
+                           .token = token_,
+                           .pairings_file = pairings_file(),
+                           .reading_takes_token = http_.reading_takes_token,
+                           .proxies = http_.proxies,
+                           .guide = web::installed_guide(),
+                           .software = with_version("yuragi"),
+                           .tick_rate_hz = rate_hz_};
     settings.hosts.push_back(asio::ip::host_name());
     settings.ask = [this](const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply) {
       asio::post(io_, [this, control, is_local, reply = std::move(reply)] { reply(handle(control, is_local)); });
     };
     if (history_) {
-      settings.history = [this](unsigned hours, const history::HistoryReader::Reply& reply) {
-        history_->ask(hours, reply);
-      };
+      settings.history = [this](unsigned hours, const history::Reader::Reply& reply) { history_->ask(hours, reply); };
     }
     settings.log = options_.log_tail;
     settings.faults = options_.fault_counter;
@@ -250,8 +248,8 @@ class Service::Io {
   }
 
   /// Reads what the daemon records itself; it owns all that it uses.
-  static std::unique_ptr<history::HistoryReader> make_history(const std::filesystem::path& file) {
-    return std::make_unique<history::HistoryReader>(
+  static std::unique_ptr<history::Reader> make_history(const std::filesystem::path& file) {
+    return std::make_unique<history::Reader>(
         [file](unsigned hours, const std::stop_token& stop) -> Result<std::string, Failure> {
           const auto history = history::read_wind_history(file, std::chrono::system_clock::now(), hours, stop);
           if (!history) return history.error();
@@ -281,7 +279,7 @@ class Service::Io {
     page_trouble_.clear();
     if (http_.listen.empty()) return;
     try {
-      web_ = std::make_unique<web::WebServer>(web_settings());
+      web_ = std::make_unique<web::Server>(web_settings());
     } catch (const FailureError& error) {
       page_trouble_ = "the page and HTTP are not served: " + std::string(error.what());
     }
@@ -430,11 +428,11 @@ class Service::Io {
 
   std::unique_ptr<recording::Recorder> make_recorder(const settings::Config& config,
                                                      const std::filesystem::path& file) const;
-  static recording::RecordingInfo recording_info(const settings::Config& config, Instant started);
+  static recording::Info recording_info(const settings::Config& config, Instant started);
 
   sensing::SensorHub::Listener listener() {
     if (!options_.record) return {};
-    return [this](std::size_t sensor, const wind::WindReading& reading) { recorder_->push(sensor, reading); };
+    return [this](std::size_t sensor, const wind::Reading& reading) { recorder_->push(sensor, reading); };
   }
 
   /// Takes readings and advances the wind.
@@ -600,7 +598,7 @@ class Service::Io {
     io_.stop();
   }
 
-  ServiceOptions options_;
+  Options options_;
   double rate_hz_;
   sensing::HeldClock clock_;
   const Instant started_ = clock_.now();
@@ -637,14 +635,14 @@ class Service::Io {
   sensing::PlayerDirector players_;
   sensing::RecordingFolders folders_;
   Latest<wind::ground::DrivingWind> wind_;
-  std::unique_ptr<animation::AnimationLoop> loop_;
+  std::unique_ptr<animation::Loop> loop_;
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
-  std::unique_ptr<history::HistoryReader> history_;  ///< null: not recorded
-  std::unique_ptr<web::WebServer> web_;              ///< null: no [http] listen
-  std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
-  ServiceManager manager_{options_.with_scenes};
+  std::unique_ptr<history::Reader> history_;  ///< null: not recorded
+  std::unique_ptr<web::Server> web_;          ///< null: no [http] listen
+  std::optional<alerts::Alerts> alerts_;      ///< nullopt: no alerts
+  Manager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame if it has scenes
 
   settings::ControlPermission control_;
@@ -661,11 +659,11 @@ std::unique_ptr<recording::Recorder> Service::Io::make_recorder(const settings::
       options_.with_scenes ? recording::RecorderStart::kRetries : recording::RecorderStart::kMustOpen);
 }
 
-recording::RecordingInfo Service::Io::recording_info(const settings::Config& config, Instant started) {
-  recording::RecordingInfo info{.started = started,
-                                .software = with_version("yuragi"),
-                                .configuration = settings::to_recorded_toml(config),
-                                .sensors = {}};
+recording::Info Service::Io::recording_info(const settings::Config& config, Instant started) {
+  recording::Info info{.started = started,
+                       .software = with_version("yuragi"),
+                       .configuration = settings::to_recorded_toml(config),
+                       .sensors = {}};
   for (const settings::SensorConfig& sensor : config.sensors) {
     info.sensors.push_back({sensor.name, std::string(sensor.driver->name), settings::to_toml(sensor.values)});
   }
@@ -688,7 +686,7 @@ void Service::Io::log_summary() const {
                1e3 * counters.work.percentile_s(0.99));
 }
 
-Service::Service(const settings::Config& config, const ServiceOptions& options)
+Service::Service(const settings::Config& config, const Options& options)
     : io_(std::make_unique<Io>(sensing::with_recorded_sources(config), options)) {}
 Service::~Service() = default;
 void Service::run() {

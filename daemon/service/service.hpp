@@ -12,7 +12,7 @@
 
 namespace yuragi::daemon::service {
 
-struct ServiceOptions {
+struct Options {
   std::optional<std::filesystem::path> record;  ///< record the readings into this file
   std::optional<double> duration_s;             ///< end after this long
   bool end_with_recordings = false;             ///< end when every sensor is a recording that has ended
@@ -39,7 +39,7 @@ struct ServiceOptions {
 
 /// The daemon: joins sensors, wind, animation, stream and recording. The data flow:
 ///
-///   sensors -> SensorHub -> WindShaper -> Latest<DrivingWind> -> AnimationLoop -> Latest<frame> -> TcpStream
+///   sensors -> SensorHub -> WindShaper -> Latest<DrivingWind> -> animation::Loop -> Latest<frame> -> TcpStream
 ///                 `-> Recorder
 ///
 /// Everything except the threads of sensors, animation and recorder runs on the one I/O thread, which is the
@@ -49,7 +49,7 @@ class Service {
   /// Opens the listening socket, the sensors and, when all else stands, the recording: a start that fails leaves it as
   /// it was. Throws ConfigError or FailureError. SIGINT and SIGTERM keep their default action until run(); a SIGHUP
   /// that was held back (hold_back_hangups()) waits for it.
-  Service(const settings::Config& config, const ServiceOptions& options);
+  Service(const settings::Config& config, const Options& options);
   ~Service();
 
   /// Runs until SIGINT, SIGTERM, a terminal that is closed, or until the options end it; SIGHUP reads the configuration

@@ -8,34 +8,32 @@
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::service {
-ServiceManager::ServiceManager(bool with_animation)
-    : ServiceManager(platform::ServiceEnvironment::read(), with_animation) {}
+Manager::Manager(bool with_animation) : Manager(platform::ServiceEnvironment::read(), with_animation) {}
 
-ServiceManager::ServiceManager(platform::ServiceEnvironment service, bool with_animation)
-    : socket_(std::move(service.socket_name)) {
+Manager::Manager(platform::ServiceEnvironment service, bool with_animation) : socket_(std::move(service.socket_name)) {
   if (socket_.is_open() && service.is_ours && service.watchdog) watchdog_.emplace(*service.watchdog, with_animation);
 }
 
-void ServiceManager::say_ready() {
+void Manager::say_ready() {
   is_ready_ = is_ready_ || socket_.send("READY=1");
 }
 
-void ServiceManager::say_reloading() {
+void Manager::say_reloading() {
   if (is_ready_ && socket_.send("RELOADING=1")) is_ready_ = false;
 }
 
-void ServiceManager::say_status(const wire::Sensors& status) {
+void Manager::say_status(const wire::Sensors& status) {
   const auto live = std::ranges::count(status.sensors, wind::SourceHealth::kLive, &wire::SensorStatus::health);
   const std::string line = fmt::format("{} of {} live, {}", live, count_text(status.sensors.size(), "sensor"),
                                        count_text(status.clients, "client"));
   if (line != status_ && socket_.send("STATUS=" + line)) status_ = line;
 }
 
-void ServiceManager::say_stopping(const std::string& why) {
+void Manager::say_stopping(const std::string& why) {
   socket_.send("STOPPING=1\nSTATUS=ending: " + why);
 }
 
-void ServiceManager::went_round(MonoTime now, std::uint64_t animation_ticks) {
+void Manager::went_round(MonoTime now, std::uint64_t animation_ticks) {
   if (!watchdog_) return;
   watchdog_->io_went_round();
   watchdog_->animation_has_made(animation_ticks);

@@ -13,10 +13,10 @@ namespace yuragi::daemon::service {
 /// Reports to systemd that the daemon is ready, a line on its state, that it ends, and that it is alive.
 /// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: what a service manager that
 /// hangs does not take is sent again later. For the I/O thread.
-class ServiceManager {
+class Manager {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
-  explicit ServiceManager(bool with_animation);
+  explicit Manager(bool with_animation);
   /// READY=1, until it is taken.
   void say_ready();
 
@@ -33,7 +33,7 @@ class ServiceManager {
   void went_round(MonoTime now, std::uint64_t animation_ticks);
 
  private:
-  ServiceManager(platform::ServiceEnvironment service, bool with_animation);
+  Manager(platform::ServiceEnvironment service, bool with_animation);
 
   platform::NotifySocket socket_;
   std::optional<WatchdogFeed> watchdog_;

@@ -62,7 +62,7 @@ struct Config {
   std::vector<SceneConfig> scenes;    ///< at least one
   std::vector<CameraConfig> cameras;
   std::vector<AlertConfig> alerts;
-  std::vector<output::OutputTable> outputs;  ///< the viewers', who read the file themselves; here they are checked
+  std::vector<output::Table> outputs;  ///< the viewers', who read the file themselves; here they are checked
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC if no camera has a time
 
   /// The values of config_tables(), from which members above were made. For what writes, compares or changes them only.

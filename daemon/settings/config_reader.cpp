@@ -44,7 +44,7 @@ SensorConfig synthetic_sensor() {
 std::vector<SceneConfig> default_scenes() {
   std::vector<SceneConfig> scenes;
   for (const std::string_view kind : {"grass", "ground"}) {
-    const scenes::SceneDescription& scene = description_named(scenes::scene_table(), kind);
+    const scenes::Description& scene = description_named(scenes::scene_table(), kind);
     scenes.push_back(
         scene_config_of(std::string(scene.name), scene, ParameterValues::resolve(scene_parameters(scene), {}).value()));
   }
@@ -55,7 +55,7 @@ std::vector<SceneConfig> default_scenes() {
 std::span<const Parameter> parameters_of(const drivers::sensor::DriverDescription& driver) {
   return driver.parameters;
 }
-std::vector<Parameter> parameters_of(const scenes::SceneDescription& scene) {
+std::vector<Parameter> parameters_of(const scenes::Description& scene) {
   return scene_parameters(scene);
 }
 
@@ -63,7 +63,7 @@ std::vector<Parameter> parameters_of(const scenes::SceneDescription& scene) {
 std::span<const scenes::RetiredParameter> retired_of(const drivers::sensor::DriverDescription&) {
   return {};
 }
-std::span<const scenes::RetiredParameter> retired_of(const scenes::SceneDescription& scene) {
+std::span<const scenes::RetiredParameter> retired_of(const scenes::Description& scene) {
   return scene.retired;
 }
 
@@ -73,7 +73,7 @@ std::set<std::string_view> keys_beside(const drivers::sensor::DriverDescription&
   for (const SensorTable& table : sensor_tables()) keys.insert(table.name);
   return keys;
 }
-std::set<std::string_view> keys_beside(const scenes::SceneDescription&) {
+std::set<std::string_view> keys_beside(const scenes::Description&) {
   return {kNameKey, "kind"};
 }
 
@@ -238,7 +238,7 @@ class ConfigReader {
                                ParameterValues values) {
     return {.name = std::move(name), .driver = &driver, .values = std::move(values)};
   }
-  static SceneConfig entry_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
+  static SceneConfig entry_of(std::string name, const scenes::Description& kind, ParameterValues values) {
     return scene_config_of(std::move(name), kind, std::move(values));
   }
 

@@ -51,7 +51,7 @@ std::string to_toml(const Config& config) {
   }
   for (const CameraConfig& camera : config.cameras) append(root, "camera", to_table(camera.values), camera.name);
   for (const AlertConfig& alert : config.alerts) append(root, "alert", to_table(alert.values), alert.name);
-  for (const output::OutputTable& output : config.outputs) {
+  for (const output::Table& output : config.outputs) {
     toml::table entry = to_table(output.values);
     toml::array windows;
     for (const ParameterValues& window : output.windows) windows.push_back(to_table(window));

@@ -33,7 +33,7 @@ void for_each_value(const Config& config, const Visit& visit) {
     visit_table("camera " + camera.name + ": ", look::camera_parameters(), camera.values);
   for (const AlertConfig& alert : config.alerts)
     visit_table("alert " + alert.name + ": ", alert_parameters(), alert.values);
-  for (const output::OutputTable& output : config.outputs) {
+  for (const output::Table& output : config.outputs) {
     const std::string where = "output " + output.output.name + ": ";
     visit_table(where, output::output_parameters(), output.values);
     for (const ParameterValues& window : output.windows) visit_table(where, output::window_parameters(), window);

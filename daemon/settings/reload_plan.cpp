@@ -182,7 +182,7 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   next.cameras = wanted.cameras;
   compare_applied(comparison, "alert", running.alerts, wanted.alerts);
   next.alerts = wanted.alerts;
-  const auto same_output = [](const output::OutputTable& one, const output::OutputTable& other) {
+  const auto same_output = [](const output::Table& one, const output::Table& other) {
     return one.output == other.output;
   };
   if (!std::ranges::equal(running.outputs, wanted.outputs, same_output)) {

@@ -24,28 +24,28 @@ const Fields<SceneConfig>& common_scene_fields() {
         .min = -1000.0,
         .max = 1000.0,
         .help = "position of the scene to the east"},
-       of_placement(&scenes::ScenePlacement::x_m)},
+       of_placement(&scenes::Placement::x_m)},
       {{.name = "y",
         .unit = "m",
         .default_value = 0.0,
         .min = -1000.0,
         .max = 1000.0,
         .help = "position of the scene upward"},
-       of_placement(&scenes::ScenePlacement::y_m)},
+       of_placement(&scenes::Placement::y_m)},
       {{.name = "z",
         .unit = "m",
         .default_value = 0.0,
         .min = -1000.0,
         .max = 1000.0,
         .help = "position of the scene to the south"},
-       of_placement(&scenes::ScenePlacement::z_m)},
+       of_placement(&scenes::Placement::z_m)},
       {{.name = "heading",
         .unit = "deg",
         .default_value = 0.0,
         .min = -360.0,
         .max = 360.0,
         .help = "rotation of the scene, clockwise from north; the wind is not rotated with it"},
-       of_placement(&scenes::ScenePlacement::heading_deg)},
+       of_placement(&scenes::Placement::heading_deg)},
       {{.name = "gain",
         .default_value = 1.0,
         .min = 0.0,
@@ -80,14 +80,14 @@ std::span<const Parameter> common_scene_parameters() {
   return common_scene_fields().parameters();
 }
 
-std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind) {
+std::vector<Parameter> scene_parameters(const scenes::Description& kind) {
   std::vector<Parameter> all(kind.parameters.begin(), kind.parameters.end());
   const std::span<const Parameter> common = common_scene_parameters();
   all.insert(all.end(), common.begin(), common.end());
   return all;
 }
 
-SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
+SceneConfig scene_config_of(std::string name, const scenes::Description& kind, ParameterValues values) {
   SceneConfig scene{.name = std::move(name), .kind = &kind, .values = std::move(values)};
   common_scene_fields().fill(scene, scene.values.all());
   return scene;

@@ -12,8 +12,6 @@
 namespace yuragi::daemon::settings {
 namespace {
 
-using wind::blend::BlendSourceSettings;
-
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAtTheEdge =
     "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
@@ -25,7 +23,7 @@ enum class Role : std::uint8_t { kOfDriver, kAbsolute, kRelative };
 
 /// [sensor.blend] as it is written.
 struct BlendTable {
-  BlendSourceSettings settings;
+  wind::blend::SourceSettings settings;
   Role role = Role::kOfDriver;
   std::optional<double> east_m;
   std::optional<double> south_m;
@@ -51,13 +49,13 @@ const Fields<BlendTable>& blend_fields() {
         .max = 1000,
         .help = "of the live sensors those with the lowest number make the wind, equal ones together; 0: its "
                 "position in the file, from 1"},
-       of_blend(&BlendSourceSettings::priority)},
+       of_blend(&wind::blend::SourceSettings::priority)},
       {{.name = "weight",
         .default_value = 1.0,
         .min = 0.01,
         .max = 100.0,
         .help = "weight among sensors of the same priority"},
-       of_blend(&BlendSourceSettings::weight)},
+       of_blend(&wind::blend::SourceSettings::weight)},
       {{.name = "x",
         .unit = "m",
         .default_value = 0.0,
@@ -82,7 +80,7 @@ const Fields<BlendTable>& blend_fields() {
         .max = 1000.0,
         .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
                 "measured gusts, but later, by lead over wind speed"},
-       of_blend(&BlendSourceSettings::lead_m)},
+       of_blend(&wind::blend::SourceSettings::lead_m)},
       {{.name = "value",
         .default_value = std::string(kAuto),
         .help =
@@ -107,7 +105,7 @@ const Fields<BlendTable>& blend_fields() {
         .min = 0.0,
         .max = 90.0,
         .help = "step of a vane with few directions (16: 22.5, 8: 45); 0: determined from its readings"},
-       of_blend(&BlendSourceSettings::direction_step_deg)},
+       of_blend(&wind::blend::SourceSettings::direction_step_deg)},
   };
   return kFields;
 }
@@ -139,7 +137,7 @@ drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
   return value;
 }
 
-std::string place_text(const BlendSourceSettings& source) {
+std::string place_text(const wind::blend::SourceSettings& source) {
   if (!source.has_place) return "at the windward edge of the scenes";
   const auto way = [](double way_m, const char* to, const char* back) {
     return way_m == 0.0 ? std::string() : fmt::format("{:g} m {}", std::abs(way_m), way_m > 0.0 ? to : back);
@@ -152,10 +150,10 @@ std::string place_text(const BlendSourceSettings& source) {
   return text;
 }
 
-Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
-                                                            const drivers::sensor::DriverDescription& driver) {
+Result<wind::blend::SourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
+                                                                    const drivers::sensor::DriverDescription& driver) {
   const BlendTable table = blend_fields().of(values);
-  BlendSourceSettings settings = table.settings;
+  wind::blend::SourceSettings settings = table.settings;
   settings.has_place = table.east_m || table.south_m;
   settings.east_m = table.east_m.value_or(0.0);
   settings.south_m = table.south_m.value_or(0.0);

@@ -22,11 +22,11 @@ drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
 /// From the values of sensor_blend_parameters(), with the driver's defaults if they are "auto"; length_m, and what
 /// sensor_value_of() returns, are not set.
 /// An error (values that contradict each other) names the key.
-Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
-    const ParameterValues& values, const drivers::sensor::DriverDescription& driver);
+Result<wind::blend::SourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
+                                                                    const drivers::sensor::DriverDescription& driver);
 
 /// Where the sensor stands, for a person: "at the windward edge of the scenes", "12 m east and 3 m north of the
 /// middle of the scenes, taken 20 m upwind of there".
-std::string place_text(const wind::blend::BlendSourceSettings& source);
+std::string place_text(const wind::blend::SourceSettings& source);
 
 }  // namespace yuragi::daemon::settings

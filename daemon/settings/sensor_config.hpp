@@ -41,8 +41,8 @@ struct SensorConfig {
   SensorHeights heights{};                              ///< from which the height factor was computed
   std::optional<wind::judging::JudgeSettings> judge{};  ///< [sensor.judge]; none: every reading is believed
   bool is_compared = false;                             ///< [sensor.judge] with the other sensors
-  wind::blend::BlendSourceSettings blend{};  ///< [sensor.blend]; length_m from the height, 0 if that is unknown
-  drivers::sensor::StatedValue value{};      ///< what its speed is, with the source; also in `blend`
+  wind::blend::SourceSettings blend{};   ///< [sensor.blend]; length_m from the height, 0 if that is unknown
+  drivers::sensor::StatedValue value{};  ///< what its speed is, with the source; also in `blend`
 
   TablesByName by_name{};  ///< of sensor_tables(), from which the members above were made
 

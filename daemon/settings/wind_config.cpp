@@ -125,7 +125,7 @@ const Fields<WindTable>& wind_fields() {
 }  // namespace
 
 double WindConfig::gust_length_m() const noexcept {
-  return default_length_m.value_or(wind::blend::BlendSettings{}.length_m);
+  return default_length_m.value_or(wind::blend::Settings{}.length_m);
 }
 
 std::span<const Parameter> wind_parameters() {

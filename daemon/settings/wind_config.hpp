@@ -30,12 +30,12 @@ struct WindConfig {
   double default_direction_deg = 0.0;  ///< where it comes from, clockwise from north; also for sensors without a vane
   double default_turbulence_intensity = 0.0;  ///< standard deviation over mean speed
   std::optional<double> default_length_m;     ///< integral length of all gusts, at least 1; none: from the heights
-  double gustiness = 0.0;                     ///< BlendSettings::gustiness
+  double gustiness = 0.0;                     ///< blend::Settings::gustiness
   std::vector<double> site_octaves_db{};      ///< SiteSpectrum::expect(); empty: no expectation
   bool is_evolving = true;                    ///< gusts change while they travel; false: frozen turbulence
-  double handover_s = 0.0;                    ///< BlendSettings::handover_s
-  double stale_intervals = 0.0;               ///< BlendSettings::stale_intervals
-  double return_after_s = 0.0;                ///< BlendSettings::return_after_s
+  double handover_s = 0.0;                    ///< blend::Settings::handover_s
+  double stale_intervals = 0.0;               ///< blend::Settings::stale_intervals
+  double return_after_s = 0.0;                ///< blend::Settings::return_after_s
   bool has_relative_gains = true;             ///< sensors that are compared are levelled (GroupGains)
   std::optional<FallbackConfig> fallback{};   ///< none: the default wind while every sensor is silent
 

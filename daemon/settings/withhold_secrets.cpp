@@ -124,7 +124,7 @@ Result<WithheldText, Failure> withhold_in_configuration(std::string_view toml_te
       for (const SensorTable& table : sensor_tables()) withhold_of_table(sensor, table.name, table.parameters);
     });
     for_each_entry("scene", [&](toml::table& scene) {
-      for (const scenes::SceneDescription* const kind : scenes::scene_table())
+      for (const scenes::Description* const kind : scenes::scene_table())
         withhold_of_table(scene, "", scene_parameters(*kind));
     });
     for_each_entry("camera", [&](toml::table& camera) { withhold_of_table(camera, "", look::camera_parameters()); });

@@ -29,7 +29,7 @@ ordered_json name_or_null(Enum value, const std::array<std::string_view, 3>& nam
 constexpr std::array<std::string_view, 3> kWindSourceNames = {"default", "handover", "live"};
 constexpr std::array<std::string_view, 3> kRecorderStateNames = {"writing", "retrying", "hanging"};
 
-ordered_json json_of_wind(const wind::WindState& wind) {
+ordered_json json_of_wind(const wind::State& wind) {
   const bool blows = speed_of(wind.wind) > 0.0;
   return {{"speed_m_s", speed_of(wind.wind)},
           {"direction_deg", blows ? ordered_json(wind::direction_from_deg(wind.wind)) : ordered_json(nullptr)},

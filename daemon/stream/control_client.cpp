@@ -12,7 +12,7 @@ constexpr auto kReloadTimeout = std::chrono::seconds(60);
 
 Result<wire::ControlReply, Failure> ask(const std::string& address, std::string_view client,
                                         const wire::Control& control, Nanoseconds timeout, const Secret& token) {
-  auto stream = StreamClient::connect(address, kControlConnectTimeout);
+  auto stream = Client::connect(address, kControlConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
   // If this fails, the daemon has closed the connection: its Hello, which can still be read, has the reason.
   if (stream->subscribe({.poses = false, .client = std::string(client), .token = token})) stream->send(control);

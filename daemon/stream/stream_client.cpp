@@ -21,13 +21,13 @@ using boost::system::error_code;
 
 }  // namespace
 
-std::string_view name_of(StreamEnd end) {
+std::string_view name_of(End end) {
   switch (end) {
-    case StreamEnd::kTimeout:
+    case End::kTimeout:
       return "nothing was received in time";
-    case StreamEnd::kClosed:
+    case End::kClosed:
       return "it closed the connection";
-    case StreamEnd::kInvalid:
+    case End::kInvalid:
       return "it sent something that is not a message";
   }
   return "?";
@@ -44,12 +44,12 @@ std::optional<Failure> refusal_in(const wire::Message& message, std::string_view
   return std::nullopt;
 }
 
-Failure connection_lost(std::string_view address, StreamEnd end) {
+Failure connection_lost(std::string_view address, End end) {
   return {"the connection to the daemon at " + std::string(address) + " was lost: " + std::string(name_of(end)),
           FailureKind::kUnavailable};
 }
 
-class StreamClient::Connection {
+class Client::Connection {
  public:
   error_code connect(const Address& address, Nanoseconds timeout) {
     error_code error;
@@ -73,17 +73,17 @@ class StreamClient::Connection {
     return !error;
   }
 
-  Result<wire::Message, StreamEnd> receive(Nanoseconds timeout) {
+  Result<wire::Message, End> receive(Nanoseconds timeout) {
     const auto deadline = std::chrono::steady_clock::now() + timeout;
     while (true) {
       // Messages received already come first; those of unknown kinds are skipped.
       while (auto message = reader_.next()) {
         if (*message) return std::move(**message);
-        if (message->error() == wire::WireError::kUnknown) continue;
+        if (message->error() == wire::Error::kUnknown) continue;
         close();
-        return StreamEnd::kInvalid;
+        return End::kInvalid;
       }
-      if (!socket_.is_open()) return StreamEnd::kClosed;
+      if (!socket_.is_open()) return End::kClosed;
 
       // Read more, within the rest of the time.
       error_code error;
@@ -99,7 +99,7 @@ class StreamClient::Connection {
         io_.run();  // the handler may still deliver bytes
       }
       reader_.feed(std::span(chunk_).first(count));
-      if (!in_time && count == 0) return StreamEnd::kTimeout;
+      if (!in_time && count == 0) return End::kTimeout;
       if (error) close();
     }
   }
@@ -123,30 +123,30 @@ class StreamClient::Connection {
   std::array<std::uint8_t, 65536> chunk_{};
 };
 
-Result<StreamClient, Failure> StreamClient::connect(std::string_view address, Nanoseconds timeout) {
+Result<Client, Failure> Client::connect(std::string_view address, Nanoseconds timeout) {
   const auto parsed = parse_address(address);
   if (!parsed) return parsed.error();
   auto connection = std::make_unique<Connection>();
   if (const auto error = connection->connect(*parsed, timeout)) {
     return Failure{"cannot reach " + std::string(address) + ": " + error.message()};
   }
-  return StreamClient(std::move(connection));
+  return Client(std::move(connection));
 }
 
-StreamClient::StreamClient(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
-StreamClient::StreamClient(StreamClient&&) noexcept = default;
-StreamClient& StreamClient::operator=(StreamClient&&) noexcept = default;
-StreamClient::~StreamClient() = default;
+Client::Client(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
+Client::Client(Client&&) noexcept = default;
+Client& Client::operator=(Client&&) noexcept = default;
+Client::~Client() = default;
 
-bool StreamClient::subscribe(const wire::Subscribe& request) {
+bool Client::subscribe(const wire::Subscribe& request) {
   return connection_->write(wire::encode(request));
 }
 
-bool StreamClient::send(const wire::Control& request) {
+bool Client::send(const wire::Control& request) {
   return connection_->write(wire::encode(request));
 }
 
-Result<wire::Message, StreamEnd> StreamClient::receive(Nanoseconds timeout) {
+Result<wire::Message, End> Client::receive(Nanoseconds timeout) {
   return connection_->receive(timeout);
 }
 

@@ -131,7 +131,7 @@ void add_clients(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
                     .take());
 }
 
-void add_web(std::vector<MetricFamily>& all, const WebCounts& counts) {
+void add_web(std::vector<MetricFamily>& all, const Counts& counts) {
   all.push_back(counter("yuragi_http_pairings_total", "Attempts of browsers to pair, by result")
                     .add(counts.pairings, {{"result", "paired"}})
                     .add(counts.failed_pairings, {{"result", "refused"}})
@@ -165,7 +165,7 @@ void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& re
 
 }  // namespace
 
-std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts,
+std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const Counts& counts,
                          const FaultCounts& faults) {
   std::vector<MetricFamily> all;
   all.push_back(gauge("yuragi_build_info", "The program").add(1.0, {{"software", software}}).take());

@@ -28,7 +28,7 @@ struct Facts {
   double patience_s = 5.0;                 ///< news that are older are no news
   LogTail log = {};
   FaultCounter faults = {};
-  WebCounts counts = {};
+  Counts counts = {};
   const Pairings* pairings = nullptr;  ///< null: no browser is paired
   const WindMemory* wind = nullptr;    ///< null: nothing is known of the last minutes
   double mono_s = 0.0;                 ///< now, of the memory's clock

@@ -91,9 +91,9 @@ HttpResponse revocation_answer(const Result<void, Failure>& saved) {
 
 }  // namespace
 
-class WebServer::Thread {
+class Server::Thread {
  public:
-  explicit Thread(WebSettings settings)
+  explicit Thread(Settings settings)
       : settings_(std::move(settings)),
         guide_(settings_.guide.empty() ? Guide() : Guide(settings_.guide)),
         pairings_file_(settings_.pairings_file),
@@ -299,13 +299,13 @@ class WebServer::Thread {
     return pending;
   }
 
-  WebSettings settings_;
+  Settings settings_;
   Guide guide_;
   PairingsFile pairings_file_;
   std::optional<Access> access_;  ///< of the thread, as all below
   Pairings pairings_;             ///< of the token
   PairingLimits pairing_limits_;
-  WebCounts counts_;
+  Counts counts_;
   stream::ClientLog log_{{}, [] { return MonoTime(steady_clock::now()); }};
   std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
@@ -317,27 +317,27 @@ class WebServer::Thread {
   std::thread thread_;  // the last: it uses all of the above
 };
 
-WebServer::WebServer(WebSettings settings) : thread_(std::make_unique<Thread>(std::move(settings))) {}
-WebServer::~WebServer() = default;
+Server::Server(Settings settings) : thread_(std::make_unique<Thread>(std::move(settings))) {}
+Server::~Server() = default;
 
-std::string WebServer::local_endpoint() const {
+std::string Server::local_endpoint() const {
   return thread_->endpoint();
 }
-void WebServer::publish(stream::SharedBytes /*frame*/) {}
-void WebServer::publish_scenes(stream::SharedBytes /*scenes*/) {}
-void WebServer::publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) {
+void Server::publish(stream::SharedBytes /*frame*/) {}
+void Server::publish_scenes(stream::SharedBytes /*scenes*/) {}
+void Server::publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) {
   thread_->publish(std::move(here), std::move(elsewhere));
 }
-std::size_t WebServer::client_count() const {
+std::size_t Server::client_count() const {
   return thread_->client_count();
 }
-bool WebServer::has_untrusted_clients() const {
+bool Server::has_untrusted_clients() const {
   return true;
 }
-void WebServer::set_token(const Secret& token) {
+void Server::set_token(const Secret& token) {
   thread_->set_token(token);
 }
-void WebServer::close() {
+void Server::close() {
   thread_->close();
 }
 

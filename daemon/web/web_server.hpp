@@ -19,7 +19,7 @@
 
 namespace yuragi::daemon::web {
 
-struct WebSettings {
+struct Settings {
   std::string listen = {};  ///< "HOST:PORT"; port 0 takes any free one
   std::vector<std::string> hosts =
       {};                    ///< names by which clients may call this machine, besides its own (is_known_host())
@@ -54,11 +54,11 @@ struct WebSettings {
 ///
 /// A thread of its own answers, from what was published last; the caller of publish() hands over a pointer and goes on.
 /// Thread-safe: everything but construction, close() and destruction.
-class WebServer final : public stream::Transport {
+class Server final : public stream::Transport {
  public:
   /// Listens and begins to answer. Throws FailureError (kUnavailable) if that is not possible.
-  explicit WebServer(WebSettings settings);
-  ~WebServer() override;
+  explicit Server(Settings settings);
+  ~Server() override;
 
   /// Where it listens: "127.0.0.1:7480".
   std::string local_endpoint() const;

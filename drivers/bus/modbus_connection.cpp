@@ -98,7 +98,7 @@ class LibmodbusConnection final : public ModbusConnection {
     return read_until_quiet(buffer, quiet, SteadyClock::now() + patience.response_timeout, interruption);
   }
 
-  bool send(const decode::modbus::ModbusRequest& request, const ModbusPatience& patience) override {
+  bool send(const decode::modbus::Request& request, const ModbusPatience& patience) override {
     if (!context_) return false;
     patience_ = patience;
     deadline_ = SteadyClock::now() + patience.response_timeout;
@@ -113,20 +113,20 @@ class LibmodbusConnection final : public ModbusConnection {
            modbus_send_raw_request(context_.get(), message.data(), static_cast<int>(message.size())) >= 0;
   }
 
-  BusMessage receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
-                     const Interruption& interruption) override {
+  Message receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                  const Interruption& interruption) override {
     // Wait for the first byte here, where `interruption` can end it and where silence differs from a message cut off.
-    if (!context_) return {BusStatus::kLost};
+    if (!context_) return {Status::kLost};
     const Nanoseconds remaining = deadline_ - SteadyClock::now();
     const bool has_bytes = remaining > Nanoseconds::zero() && wait_for_bytes(remaining, interruption);
-    if (interruption.is_set()) return {BusStatus::kInterrupted};
-    if (!has_bytes) return {BusStatus::kSilence};
+    if (interruption.is_set()) return {Status::kInterrupted};
+    if (!has_bytes) return {Status::kSilence};
 
     // Then libmodbus cuts out one message.
     std::ranges::fill(buffer, std::uint8_t{0});
     set_response_timeout(context_.get(), std::min<Nanoseconds>(deadline_ - SteadyClock::now(), kMaxMessage));
     const int size = modbus_receive_confirmation(context_.get(), buffer.data());
-    if (size > 0) return {BusStatus::kMessage, static_cast<std::size_t>(size)};
+    if (size > 0) return {Status::kMessage, static_cast<std::size_t>(size)};
     if (size == 0 || errno == EMBBADCRC) {
       // A whole message of another slave stands for itself. One that is damaged, perhaps by a stray byte in front, is
       // not cut where it should be: the decoder shall see all that the line brings.
@@ -134,15 +134,15 @@ class LibmodbusConnection final : public ModbusConnection {
       const bool is_whole = decode::modbus::modbus_crc(buffer.first(framed)) == 0;
       const Nanoseconds quiet = std::max(patience_.byte_timeout, frame_gap(line_));
       const std::size_t more = is_whole ? 0 : read_until_quiet(buffer.subspan(framed), quiet, deadline_, interruption);
-      return {BusStatus::kMessage, framed + more};
+      return {Status::kMessage, framed + more};
     }
-    if (errno == ETIMEDOUT) return {BusStatus::kCutOff};
-    if (errno == EMBBADDATA) return {BusStatus::kGarbled};
-    return {BusStatus::kLost};
+    if (errno == ETIMEDOUT) return {Status::kCutOff};
+    if (errno == EMBBADDATA) return {Status::kGarbled};
+    return {Status::kLost};
   }
 
  private:
-  bool is_tcp() const { return line_.framing == decode::modbus::ModbusFraming::kTcp; }
+  bool is_tcp() const { return line_.framing == decode::modbus::Framing::kTcp; }
 
   /// libmodbus takes no time-out of zero.
   static void set_response_timeout(modbus_t* context, Nanoseconds timeout) {
@@ -190,7 +190,7 @@ class LibmodbusConnection final : public ModbusConnection {
 }  // namespace
 
 std::string describe(const ModbusLine& line) {
-  if (line.framing == decode::modbus::ModbusFraming::kRtu) return line.device;
+  if (line.framing == decode::modbus::Framing::kRtu) return line.device;
   const bool is_ipv6 = line.host.find(':') != std::string::npos;
   return (is_ipv6 ? "[" + line.host + "]" : line.host) + ":" + std::to_string(line.port);
 }
@@ -198,7 +198,7 @@ std::string describe(const ModbusLine& line) {
 Nanoseconds frame_gap(const ModbusLine& line) noexcept {
   constexpr int kFastest = 19200;
   constexpr int kBits = 39;  // 3.5 characters of 11 bits
-  if (line.framing == decode::modbus::ModbusFraming::kTcp) return Nanoseconds::zero();
+  if (line.framing == decode::modbus::Framing::kTcp) return Nanoseconds::zero();
   if (line.baud > kFastest) return std::chrono::microseconds(1750);
   return std::chrono::nanoseconds(std::chrono::seconds(1)) * kBits / line.baud;
 }

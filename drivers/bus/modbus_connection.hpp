@@ -15,7 +15,7 @@ namespace yuragi::drivers::bus {
 
 /// Where Modbus devices are reached.
 struct ModbusLine {
-  decode::modbus::ModbusFraming framing = decode::modbus::ModbusFraming::kTcp;
+  decode::modbus::Framing framing = decode::modbus::Framing::kTcp;
 
   std::string host;  ///< TCP: a name, an IPv4 or an IPv6 address
   std::uint16_t port = 502;
@@ -42,7 +42,7 @@ std::string describe(const ModbusLine& line);
 Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 
 /// The result of waiting for a reply.
-enum class BusStatus : std::uint8_t {
+enum class Status : std::uint8_t {
   kMessage,      ///< a message, not decoded yet
   kSilence,      ///< nothing until the response time-out
   kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
@@ -51,8 +51,8 @@ enum class BusStatus : std::uint8_t {
   kLost,         ///< the connection is gone
 };
 
-struct BusMessage {
-  BusStatus status = BusStatus::kSilence;
+struct Message {
+  Status status = Status::kSilence;
   std::size_t size = 0;  ///< bytes, for kMessage
 };
 
@@ -78,12 +78,12 @@ class ModbusConnection {
 
   /// Sends a request and starts its response time-out. On a serial line, unrequested bytes are discarded first. False:
   /// the connection is gone.
-  virtual bool send(const decode::modbus::ModbusRequest& request, const ModbusPatience& patience) = 0;
+  virtual bool send(const decode::modbus::Request& request, const ModbusPatience& patience) = 0;
 
   /// The next message since, waiting until the response time-out that send() began. Can be called again after a message
   /// that was another slave's.
-  virtual BusMessage receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
-                             const Interruption& interruption) = 0;
+  virtual Message receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                          const Interruption& interruption) = 0;
 };
 
 /// The real one, by libmodbus.

@@ -81,7 +81,7 @@ void VantageSensor::enter(Phase phase, MonoTime now) {
   wake_tries_ = 0;
 }
 
-Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   const MonoTime start = clock.now().mono;
   if (phase_ != Phase::kReceive && !awaits_reply_) {
     if (start < next_request_) return next_request_;
@@ -120,7 +120,7 @@ std::string VantageSensor::request() const {
 }
 
 /// False: the port is lost.
-bool VantageSensor::send_request(MonoTime now, sensor::SensorSink& sink) {
+bool VantageSensor::send_request(MonoTime now, sensor::Sink& sink) {
   drop_old_input();
   const std::string request = this->request();
   if (!port_->write(bytes_of(request))) return false;
@@ -138,7 +138,7 @@ void VantageSensor::drop_old_input() {
   }
 }
 
-Result<void, Failure> VantageSensor::take(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink) {
+Result<void, Failure> VantageSensor::take(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink) {
   if (phase_ == Phase::kReceive) {
     take_packets(bytes, now, sink);
     return {};
@@ -148,7 +148,7 @@ Result<void, Failure> VantageSensor::take(decode::ByteSpan bytes, const Instant&
 }
 
 /// A reply may come in pieces, and after the LF CR of a wake-up that came late.
-Result<void, Failure> VantageSensor::take_reply(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink) {
+Result<void, Failure> VantageSensor::take_reply(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink) {
   for (; !bytes.empty(); bytes = bytes.subspan(1)) {
     const std::uint8_t byte = bytes.front();
     if (phase_ == Phase::kWake) {
@@ -179,7 +179,7 @@ Result<void, Failure> VantageSensor::take_reply(decode::ByteSpan bytes, const In
   return {};
 }
 
-void VantageSensor::take_setup(decode::ByteSpan reply, MonoTime now, sensor::SensorSink& sink) {
+void VantageSensor::take_setup(decode::ByteSpan reply, MonoTime now, sensor::Sink& sink) {
   has_asked_for_setup_ = true;
   if (const auto rain_of_a_tip_mm = decode::davis::decode_vantage_rain_of_a_tip_mm(reply)) {
     rain_of_a_tip_mm_ = *rain_of_a_tip_mm;
@@ -189,7 +189,7 @@ void VantageSensor::take_setup(decode::ByteSpan reply, MonoTime now, sensor::Sen
   enter(Phase::kAsk, now);
 }
 
-void VantageSensor::take_packets(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink) {
+void VantageSensor::take_packets(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink) {
   if (now.mono - last_bytes_ >= kPacketCut && assembler_.cut()) {
     has_damaged_packets_ = true;
     sink.refused(decode::Refusal::kTooShort);
@@ -207,7 +207,7 @@ void VantageSensor::take_packets(decode::ByteSpan bytes, const Instant& now, sen
   if (phase_ == Phase::kReceive && packets_left_ <= kLastPackets) enter(Phase::kWake, now.mono);
 }
 
-void VantageSensor::take_packet(decode::ByteSpan packet, const Instant& now, sensor::SensorSink& sink) {
+void VantageSensor::take_packet(decode::ByteSpan packet, const Instant& now, sensor::Sink& sink) {
   sink.raw(sensor::RawDirection::kReceived, packet);
   last_packet_ = now.mono;
   vain_requests_ = 0;
@@ -237,7 +237,7 @@ void VantageSensor::take_packet(decode::ByteSpan packet, const Instant& now, sen
 }
 
 /// No reply in time, or another one.
-Result<void, Failure> VantageSensor::give_up_reply(MonoTime now, sensor::SensorSink& sink) {
+Result<void, Failure> VantageSensor::give_up_reply(MonoTime now, sensor::Sink& sink) {
   const bool is_late = now >= reply_due_;
   if (is_late) sink.refused(decode::Refusal::kTimeout);
   awaits_reply_ = false;
@@ -271,7 +271,7 @@ Result<void, Failure> VantageSensor::give_up_asking(MonoTime now) {
   return {};
 }
 
-Result<void, Failure> VantageSensor::doubt_packets(MonoTime now, sensor::SensorSink& sink) {
+Result<void, Failure> VantageSensor::doubt_packets(MonoTime now, sensor::Sink& sink) {
   if (now - last_packet_ < kPacketPatience) return {};
   if (now - last_bytes_ >= kPacketPatience) sink.refused(decode::Refusal::kTimeout);
   const std::string trouble =

@@ -42,7 +42,7 @@ class VantageSensor final : public sensor::ReopeningSensor {
 
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override;
   void close() noexcept override;
 
  private:
@@ -50,17 +50,17 @@ class VantageSensor final : public sensor::ReopeningSensor {
   enum class Phase : std::uint8_t { kWake, kSetup, kAsk, kReceive };
 
   void enter(Phase phase, MonoTime now);
-  bool send_request(MonoTime now, sensor::SensorSink& sink);
+  bool send_request(MonoTime now, sensor::Sink& sink);
   std::string request() const;
   void drop_old_input();
-  Result<void, Failure> take(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink);
-  Result<void, Failure> take_reply(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink);
-  void take_setup(decode::ByteSpan reply, MonoTime now, sensor::SensorSink& sink);
-  void take_packets(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink);
-  void take_packet(decode::ByteSpan packet, const Instant& now, sensor::SensorSink& sink);
-  Result<void, Failure> give_up_reply(MonoTime now, sensor::SensorSink& sink);
+  Result<void, Failure> take(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink);
+  Result<void, Failure> take_reply(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink);
+  void take_setup(decode::ByteSpan reply, MonoTime now, sensor::Sink& sink);
+  void take_packets(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink);
+  void take_packet(decode::ByteSpan packet, const Instant& now, sensor::Sink& sink);
+  Result<void, Failure> give_up_reply(MonoTime now, sensor::Sink& sink);
   Result<void, Failure> give_up_asking(MonoTime now);
-  Result<void, Failure> doubt_packets(MonoTime now, sensor::SensorSink& sink);
+  Result<void, Failure> doubt_packets(MonoTime now, sensor::Sink& sink);
 
   VantageSettings settings_;
   std::string where_;

@@ -65,7 +65,7 @@ void WeatherLinkLiveSensor::close() noexcept {
   broadcasts_->close();
 }
 
-Result<MonoTime, Failure> WeatherLinkLiveSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> WeatherLinkLiveSensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   if (!http_.is_under_way()) begin_request(clock, sink);
   if (http_.is_under_way()) advance_request(clock.now(), sink);
 
@@ -99,7 +99,7 @@ bool WeatherLinkLiveSensor::has_broadcasts(MonoTime now) const {
 }
 
 /// The conditions come first, because they have the id of the device whose broadcasts are accepted.
-void WeatherLinkLiveSensor::begin_request(const sensor::Clock& clock, sensor::SensorSink& sink) {
+void WeatherLinkLiveSensor::begin_request(const sensor::Clock& clock, sensor::Sink& sink) {
   MonoTime now = clock.now().mono;
   if (now >= next_conditions_) {
     request_ = Request::kConditions;
@@ -118,7 +118,7 @@ void WeatherLinkLiveSensor::begin_request(const sensor::Clock& clock, sensor::Se
   request_due_ = now + kHttpPatience;
 }
 
-void WeatherLinkLiveSensor::advance_request(const Instant& now, sensor::SensorSink& sink) {
+void WeatherLinkLiveSensor::advance_request(const Instant& now, sensor::Sink& sink) {
   const auto reply = http_.advance(kHttpRead);
   if (!reply) {
     if (now.mono < request_due_) return;
@@ -143,7 +143,7 @@ void WeatherLinkLiveSensor::advance_request(const Instant& now, sensor::SensorSi
 }
 
 /// While broadcasts arrive nothing is lost yet; and if only they are missing, the conditions have a wind.
-void WeatherLinkLiveSensor::fail_request(MonoTime now, const std::string& why, sensor::SensorSink& sink) {
+void WeatherLinkLiveSensor::fail_request(MonoTime now, const std::string& why, sensor::Sink& sink) {
   if (request_ == Request::kBroadcasts) {
     advice_ = ": " + why;
     return;
@@ -152,7 +152,7 @@ void WeatherLinkLiveSensor::fail_request(MonoTime now, const std::string& why, s
   if (!has_broadcasts(now)) report_unusable(sink, trouble_);
 }
 
-void WeatherLinkLiveSensor::take_conditions(std::string_view json, const Instant& now, sensor::SensorSink& sink) {
+void WeatherLinkLiveSensor::take_conditions(std::string_view json, const Instant& now, sensor::Sink& sink) {
   auto conditions = decode::davis::decode_live_conditions(json, transmitter_);
   is_received_ = conditions || conditions.error() != decode::Refusal::kInvalid;
   if (!conditions) {
@@ -178,7 +178,7 @@ void WeatherLinkLiveSensor::take_conditions(std::string_view json, const Instant
   publish(*conditions, now, lacks_broadcasts ? ", without broadcasts" + advice_ : "", sink);
 }
 
-void WeatherLinkLiveSensor::take_broadcast_port(std::string_view json, MonoTime now, sensor::SensorSink& sink) {
+void WeatherLinkLiveSensor::take_broadcast_port(std::string_view json, MonoTime now, sensor::Sink& sink) {
   const auto port = decode::davis::decode_live_broadcast_port(json);
   if (!port) {
     sink.refused(port.error());
@@ -191,7 +191,7 @@ void WeatherLinkLiveSensor::take_broadcast_port(std::string_view json, MonoTime 
   next_renewal_ = now + kRenewal;
 }
 
-void WeatherLinkLiveSensor::take_broadcast(std::string_view json, const Instant& now, sensor::SensorSink& sink) {
+void WeatherLinkLiveSensor::take_broadcast(std::string_view json, const Instant& now, sensor::Sink& sink) {
   sink.raw(sensor::RawDirection::kReceived, {reinterpret_cast<const std::uint8_t*>(json.data()), json.size()});
   const auto conditions = decode::davis::decode_live_conditions(json, transmitter_);
   if (!conditions) return sink.refused(conditions.error());
@@ -204,7 +204,7 @@ void WeatherLinkLiveSensor::take_broadcast(std::string_view json, const Instant&
 }
 
 void WeatherLinkLiveSensor::publish(const decode::davis::LiveConditions& conditions, const Instant& now,
-                                    const std::string& how, sensor::SensorSink& sink) {
+                                    const std::string& how, sensor::Sink& sink) {
   report_connected(sink, fmt::format("WeatherLink Live {} at {}, transmitter {}{}", conditions.device, where_,
                                      conditions.transmitter, how));
   const bool is_uncertain = conditions.wind.status == decode::DecodedStatus::kUncertain;

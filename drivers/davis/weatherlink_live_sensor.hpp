@@ -35,20 +35,20 @@ class WeatherLinkLiveSensor final : public sensor::ReopeningSensor {
 
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override;
   void close() noexcept override;
 
  private:
   enum class Request : std::uint8_t { kConditions, kBroadcasts };
 
-  void begin_request(const sensor::Clock& clock, sensor::SensorSink& sink);
-  void advance_request(const Instant& now, sensor::SensorSink& sink);
-  void fail_request(MonoTime now, const std::string& why, sensor::SensorSink& sink);
-  void take_conditions(std::string_view json, const Instant& now, sensor::SensorSink& sink);
-  void take_broadcast_port(std::string_view json, MonoTime now, sensor::SensorSink& sink);
-  void take_broadcast(std::string_view json, const Instant& now, sensor::SensorSink& sink);
+  void begin_request(const sensor::Clock& clock, sensor::Sink& sink);
+  void advance_request(const Instant& now, sensor::Sink& sink);
+  void fail_request(MonoTime now, const std::string& why, sensor::Sink& sink);
+  void take_conditions(std::string_view json, const Instant& now, sensor::Sink& sink);
+  void take_broadcast_port(std::string_view json, MonoTime now, sensor::Sink& sink);
+  void take_broadcast(std::string_view json, const Instant& now, sensor::Sink& sink);
   void publish(const decode::davis::LiveConditions& conditions, const Instant& now, const std::string& how,
-               sensor::SensorSink& sink);
+               sensor::Sink& sink);
   bool has_broadcasts(MonoTime now) const;
 
   WeatherLinkLiveSettings settings_;

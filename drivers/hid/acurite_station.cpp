@@ -17,11 +17,11 @@ constexpr Nanoseconds kAcuriteRetry = 6s;
 constexpr Nanoseconds kAcuriteNothingNew = 90s;
 constexpr int kAcuriteGiveUp = 4;  // failures in a row; then it is opened again, which helps some consoles
 
-class AcuriteStation final : public HidStation {
+class AcuriteStation final : public Station {
  public:
   explicit AcuriteStation(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidExchange& exchange) override {
+  Result<StationStep, Failure> step(Exchange& exchange) override {
     const MonoTime begin = exchange.now();
     if (last_new_ == MonoTime{}) last_new_ = begin;
     Report first;
@@ -67,8 +67,8 @@ class AcuriteStation final : public HidStation {
   };
 
   /// Report 1; empty if it was refused. False: the device is gone.
-  static bool request(HidExchange& exchange, Report& report) {
-    const HidMessage message = exchange.get_input_report(1, decode::hid::kAcuriteReport1);
+  static bool request(Exchange& exchange, Report& report) {
+    const Message message = exchange.get_input_report(1, decode::hid::kAcuriteReport1);
     if (message.status == bus::HidStatus::kLost) return false;
     report.size = message.bytes.size();
     std::ranges::copy(message.bytes, report.bytes.begin());
@@ -82,7 +82,7 @@ class AcuriteStation final : public HidStation {
     return StationStep::unwell(next, "repeats the same report: unplug it and plug it in again");
   }
 
-  Result<StationStep, Failure> fail(HidExchange& exchange, decode::Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(Exchange& exchange, decode::Refusal why, const std::string& trouble) {
     exchange.refuse(why);
     if (++failures_ >= kAcuriteGiveUp) return Failure{trouble};
     return StationStep::unwell(exchange.now() + timing_.paced(kAcuriteRetry), trouble);
@@ -96,7 +96,7 @@ class AcuriteStation final : public HidStation {
 
 }  // namespace
 
-std::unique_ptr<HidStation> make_acurite_station(const StationTiming& timing) {
+std::unique_ptr<Station> make_acurite_station(const StationTiming& timing) {
   return std::make_unique<AcuriteStation>(timing);
 }
 

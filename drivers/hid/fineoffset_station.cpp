@@ -37,7 +37,7 @@ constexpr std::size_t kFineOffsetRecord = 16;     // the common part of both mod
 
 using FineOffsetBytes = std::array<std::uint8_t, decode::hid::kFineOffsetBlock>;
 
-class FineOffsetStation final : public HidStation {
+class FineOffsetStation final : public Station {
  public:
   explicit FineOffsetStation(const StationTiming& timing)
       : timing_(timing),
@@ -46,7 +46,7 @@ class FineOffsetStation final : public HidStation {
     begin_round();
   }
 
-  Result<StationStep, Failure> step(HidExchange& exchange) override {
+  Result<StationStep, Failure> step(Exchange& exchange) override {
     const MonoTime now = exchange.now();
     if (const MonoTime clear = keep_away(now); clear > now) return StationStep::same(clear);
 
@@ -85,11 +85,11 @@ class FineOffsetStation final : public HidStation {
     return time;
   }
 
-  static BlockStatus read_block(HidExchange& exchange, std::uint16_t address, FineOffsetBytes& block) {
+  static BlockStatus read_block(Exchange& exchange, std::uint16_t address, FineOffsetBytes& block) {
     if (!exchange.discard_waiting() || !exchange.send(decode::hid::encode_fineoffset_read(address)))
       return BlockStatus::kLost;
     for (std::size_t size = 0; size < block.size();) {
-      const HidMessage message = exchange.read(kFineOffsetReport);
+      const Message message = exchange.read(kFineOffsetReport);
       if (message.status == bus::HidStatus::kLost) return BlockStatus::kLost;
       if (message.status != bus::HidStatus::kReport) return size == 0 ? BlockStatus::kNone : BlockStatus::kCutOff;
       if (message.bytes.size() != 8) return BlockStatus::kCutOff;
@@ -100,7 +100,7 @@ class FineOffsetStation final : public HidStation {
   }
 
   /// The block was not the same twice: the console is writing to it, and will soon be done; or the cable is bad.
-  Result<StationStep, Failure> wait_for_writing(HidExchange& exchange) {
+  Result<StationStep, Failure> wait_for_writing(Exchange& exchange) {
     last_block_.reset();
     if (++unstable_ >= kFineOffsetUnstable) {
       return fail(exchange, decode::Refusal::kMalformed, "reads differently each time: check its cable");
@@ -109,7 +109,7 @@ class FineOffsetStation final : public HidStation {
   }
 
   /// Reads the address of the current record, which is in the memory of either model.
-  Result<StationStep, Failure> take_fixed_block(HidExchange& exchange) {
+  Result<StationStep, Failure> take_fixed_block(Exchange& exchange) {
     auto fixed = decode::hid::decode_fineoffset_fixed_block(blocks_[0], decode::hid::FineOffsetModel::kWh1080);
     if (!fixed) fixed = decode::hid::decode_fineoffset_fixed_block(blocks_[0], decode::hid::FineOffsetModel::kWh3080);
     if (!fixed) {
@@ -128,7 +128,7 @@ class FineOffsetStation final : public HidStation {
     return StationStep::same(exchange.now());
   }
 
-  Result<StationStep, Failure> take_record(HidExchange& exchange) {
+  Result<StationStep, Failure> take_record(Exchange& exchange) {
     if (blocks_.back() == blocks_.front()) {
       return fail(exchange, decode::Refusal::kNotMine, "replies to another request: check its cable");
     }
@@ -176,7 +176,7 @@ class FineOffsetStation final : public HidStation {
   }
 
   /// Evaluates a complete round.
-  StationStep judge(const Record& record, HidExchange& exchange) {
+  StationStep judge(const Record& record, Exchange& exchange) {
     const MonoTime now = exchange.now();
     const RecordChange change = compare(record);
     learn(change, now);
@@ -199,7 +199,7 @@ class FineOffsetStation final : public HidStation {
     return publish(record, exchange, next);
   }
 
-  static StationStep publish(const Record& record, HidExchange& exchange, MonoTime next) {
+  static StationStep publish(const Record& record, Exchange& exchange, MonoTime next) {
     exchange.publish(decode::hid::decode_fineoffset_quantities(record));
     const auto wind = decode::hid::decode_fineoffset_record(record);
     if (wind && exchange.publish(*wind)) return StationStep::well(next);
@@ -234,7 +234,7 @@ class FineOffsetStation final : public HidStation {
     return due_;
   }
 
-  Result<StationStep, Failure> fail(HidExchange& exchange, decode::Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(Exchange& exchange, decode::Refusal why, const std::string& trouble) {
     begin_round();
     exchange.refuse(why);
     if (++failures_ >= kFineOffsetGiveUp) return Failure{trouble};
@@ -267,7 +267,7 @@ class FineOffsetStation final : public HidStation {
 
 }  // namespace
 
-std::unique_ptr<HidStation> make_fineoffset_station(const StationTiming& timing) {
+std::unique_ptr<Station> make_fineoffset_station(const StationTiming& timing) {
   return std::make_unique<FineOffsetStation>(timing);
 }
 

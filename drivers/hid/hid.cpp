@@ -30,34 +30,34 @@ namespace {
 constexpr std::array<std::string_view, 6> kStationChoices = {"auto",       "wmr100",  "wmr300",
                                                              "fineoffset", "acurite", "te923"};
 
-struct HidKeys {
+struct Keys {
   std::string station;
   bus::HidPlace place;
   double pace = 1.0;
   Nanoseconds poll_interval{};
 };
 
-const Fields<HidKeys> kHidFields = {
+const Fields<Keys> kHidFields = {
     {{.name = "station",
       .default_value = std::string("auto"),
       .help = "family of the station; auto: the one that is plugged in",
       .choices = kStationChoices},
-     &HidKeys::station},
+     &Keys::station},
     {{.name = "path",
       .default_value = std::string(""),
       .help =
           "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; selects one of several"},
-     [](HidKeys& keys) -> std::string& { return keys.place.path; }},
+     [](Keys& keys) -> std::string& { return keys.place.path; }},
     {{.name = "serial",
       .default_value = std::string(""),
       .help = "its serial number, if it has one; selects one of several"},
-     [](HidKeys& keys) -> std::string& { return keys.place.serial; }},
+     [](Keys& keys) -> std::string& { return keys.place.serial; }},
     {{"poll_interval", "s", 0.0, 0.0, 3600.0,
       "interval between requests, of fineoffset, acurite and te923; 0: the station's own, 48, 18 and 33 s. A "
       "shorter one gives no new readings; fineoffset, which could lock up, ignores it"},
-     &HidKeys::poll_interval,
+     &Keys::poll_interval,
      from_seconds},
-    {{"pace", "", 1.0, 1.0, 1000.0, "speed relative to a real station, for simulated ones"}, &HidKeys::pace},
+    {{"pace", "", 1.0, 1.0, 1000.0, "speed relative to a real station, for simulated ones"}, &Keys::pace},
 };
 
 std::span<const StationKind> kinds_named(std::string_view name) {
@@ -69,14 +69,14 @@ std::span<const StationKind> kinds_named(std::string_view name) {
 
 std::unique_ptr<sensor::Sensor> open_hid(const ParameterValues& values) {
   const auto [station, place, pace, poll_interval] = kHidFields.of(values);
-  return std::make_unique<HidSensor>(kinds_named(station), place,
-                                     StationTiming{.pace = pace, .poll_interval = poll_interval},
-                                     sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
+  return std::make_unique<Sensor>(kinds_named(station), place,
+                                  StationTiming{.pace = pace, .poll_interval = poll_interval},
+                                  sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
 }
 
 /// A path of a file is that behind its links.
 sensor::ValueSelection hid_selection(const ParameterValues& values) {
-  const HidKeys keys = kHidFields.of(values);
+  const Keys keys = kHidFields.of(values);
   std::string path = keys.place.path;
   if (path.starts_with('/')) {
     std::error_code error;

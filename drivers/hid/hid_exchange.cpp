@@ -10,7 +10,7 @@ constexpr int kMaxWaiting = 128;
 
 }  // namespace
 
-HidMessage HidExchange::read(Nanoseconds timeout) {
+Message Exchange::read(Nanoseconds timeout) {
   const bus::HidArrival arrival = device_.read(std::span(buffer_).first(kMaxReport), timeout);
   if (arrival.status != bus::HidStatus::kReport) return {arrival.status, {}};
   const decode::ByteSpan bytes = decode::ByteSpan(buffer_).first(arrival.size);
@@ -18,7 +18,7 @@ HidMessage HidExchange::read(Nanoseconds timeout) {
   return {arrival.status, bytes};
 }
 
-bool HidExchange::send(std::span<const std::uint8_t> bytes) {
+bool Exchange::send(std::span<const std::uint8_t> bytes) {
   if (bytes.size() > kMaxReport) return false;
   std::array<std::uint8_t, kMaxReport + 1> numbered{};
   std::ranges::copy(bytes, numbered.begin() + 1);
@@ -26,7 +26,7 @@ bool HidExchange::send(std::span<const std::uint8_t> bytes) {
   return device_.write(std::span(numbered).first(bytes.size() + 1));
 }
 
-HidMessage HidExchange::get_input_report(std::uint8_t id, std::size_t size) {
+Message Exchange::get_input_report(std::uint8_t id, std::size_t size) {
   const bus::HidArrival arrival = device_.get_input_report(id, std::span(buffer_).first(std::min(size, kMaxReport)));
   if (arrival.status != bus::HidStatus::kReport) return {arrival.status, {}};
   const decode::ByteSpan bytes = decode::ByteSpan(buffer_).first(arrival.size);
@@ -34,22 +34,22 @@ HidMessage HidExchange::get_input_report(std::uint8_t id, std::size_t size) {
   return {arrival.status, bytes};
 }
 
-bool HidExchange::discard_waiting() {
+bool Exchange::discard_waiting() {
   for (int i = 0; i < kMaxWaiting; ++i) {
-    const HidMessage message = read(Nanoseconds::zero());
+    const Message message = read(Nanoseconds::zero());
     if (message.status != bus::HidStatus::kReport) return message.status != bus::HidStatus::kLost;
     refuse(decode::Refusal::kNotMine);
   }
   return true;
 }
 
-void HidExchange::publish(std::optional<wind::StationQuantities> quantities) {
+void Exchange::publish(std::optional<wind::StationQuantities> quantities) {
   if (!quantities) return;
   quantities->time = clock_.now();
   sink_.quantities(*quantities);
 }
 
-bool HidExchange::publish(const decode::DecodedWind& wind) {
+bool Exchange::publish(const decode::DecodedWind& wind) {
   if (!wind.speed_m_s) {
     refuse(decode::Refusal::kInvalid);
     return false;

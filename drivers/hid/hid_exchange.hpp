@@ -14,24 +14,24 @@
 namespace yuragi::drivers::hid {
 
 /// The result of a read.
-struct HidMessage {
+struct Message {
   bus::HidStatus status = bus::HidStatus::kSilence;
   decode::ByteSpan bytes;  ///< for kReport; valid until the next message
 };
 
 /// The exchange with a station during one poll(): device, clock and sink. Shows every message to the sink. Owns
 /// nothing. Thread-safe: no.
-class HidExchange {
+class Exchange {
  public:
-  HidExchange(bus::HidDevice& device, const sensor::Clock& clock, sensor::SensorSink& sink)
+  Exchange(bus::HidDevice& device, const sensor::Clock& clock, sensor::Sink& sink)
       : device_(device), clock_(clock), sink_(sink) {}
 
   MonoTime now() const noexcept { return clock_.now().mono; }
 
-  HidMessage read(Nanoseconds timeout);
+  Message read(Nanoseconds timeout);
   /// Sends the bytes as an output report without a number.
   bool send(std::span<const std::uint8_t> bytes);
-  HidMessage get_input_report(std::uint8_t id, std::size_t size);
+  Message get_input_report(std::uint8_t id, std::size_t size);
 
   /// Discards reports that came before the request: late replies. False: the device is gone.
   bool discard_waiting();
@@ -47,7 +47,7 @@ class HidExchange {
 
   bus::HidDevice& device_;
   const sensor::Clock& clock_;
-  sensor::SensorSink& sink_;
+  sensor::Sink& sink_;
   std::array<std::uint8_t, kMaxReport + 1> buffer_{};
 };
 

@@ -11,15 +11,15 @@ constexpr Nanoseconds kLookAfterEvery = std::chrono::seconds(1);
 
 }  // namespace
 
-HidSensor::HidSensor(std::span<const StationKind> kinds, bus::HidPlace place, const StationTiming& timing,
-                     std::uint32_t seed, std::unique_ptr<bus::HidDevice> device)
+Sensor::Sensor(std::span<const StationKind> kinds, bus::HidPlace place, const StationTiming& timing, std::uint32_t seed,
+               std::unique_ptr<bus::HidDevice> device)
     : sensor::ReopeningSensor(seed),
       kinds_(kinds),
       place_(std::move(place)),
       timing_(timing),
       device_(std::move(device)) {}
 
-Result<MonoTime, Failure> HidSensor::open(const sensor::Clock& clock) {
+Result<MonoTime, Failure> Sensor::open(const sensor::Clock& clock) {
   std::vector<bus::HidId> ids;
   for (const StationKind& kind : kinds_) ids.push_back(kind.id);
   const Result<bus::HidInfo, Failure> opened = device_->open(ids, place_);
@@ -31,8 +31,8 @@ Result<MonoTime, Failure> HidSensor::open(const sensor::Clock& clock) {
   return next_step_;
 }
 
-Result<MonoTime, Failure> HidSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
-  HidExchange exchange(*device_, clock, sink);
+Result<MonoTime, Failure> Sensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
+  Exchange exchange(*device_, clock, sink);
   if (exchange.now() < next_step_) return look_after(exchange);
 
   const Result<StationStep, Failure> step = station_->step(exchange);
@@ -46,26 +46,26 @@ Result<MonoTime, Failure> HidSensor::work(const sensor::Clock& clock, sensor::Se
 }
 
 /// The reason why the device could not be used: gone, or not accepting reports.
-std::string HidSensor::why_useless(HidExchange& exchange) {
+std::string Sensor::why_useless(Exchange& exchange) {
   if (exchange.read(Nanoseconds::zero()).status == bus::HidStatus::kLost) return "is gone: plug it in again";
   exchange.refuse(decode::Refusal::kTimeout);
   return "does not accept requests: unplug its cable, remove its batteries, then connect both again";
 }
 
 /// Checks between two steps that the device is still present.
-Result<MonoTime, Failure> HidSensor::look_after(HidExchange& exchange) {
-  const HidMessage message = exchange.read(Nanoseconds::zero());
+Result<MonoTime, Failure> Sensor::look_after(Exchange& exchange) {
+  const Message message = exchange.read(Nanoseconds::zero());
   if (message.status == bus::HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};
   if (message.status == bus::HidStatus::kReport) exchange.refuse(decode::Refusal::kNotMine);
   return std::min(next_step_, exchange.now() + kLookAfterEvery);
 }
 
-void HidSensor::interrupt() noexcept {
+void Sensor::interrupt() noexcept {
   is_interrupted_ = true;
   device_->interrupt();
 }
 
-void HidSensor::close() noexcept {
+void Sensor::close() noexcept {
   station_.reset();
   device_->close();
 }

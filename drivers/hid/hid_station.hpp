@@ -34,13 +34,13 @@ struct StationStep {
 };
 
 /// The protocol of one family of stations; a new object each time that the device is opened.
-class HidStation {
+class Station {
  public:
-  virtual ~HidStation() = default;
+  virtual ~Station() = default;
 
   /// The next step of the protocol, no longer than the station's own time-out. On failure the device must be opened
   /// again; the text is the reason, empty if it is gone or accepts nothing.
-  virtual Result<StationStep, Failure> step(HidExchange& exchange) = 0;
+  virtual Result<StationStep, Failure> step(Exchange& exchange) = 0;
 };
 
 /// The timing of a station.
@@ -60,15 +60,15 @@ struct StationKind {
   std::string_view name;   ///< in a configuration
   std::string_view title;  ///< for people
   bus::HidId id;
-  std::unique_ptr<HidStation> (*make)(const StationTiming& timing);
+  std::unique_ptr<Station> (*make)(const StationTiming& timing);
 };
 
 // Each in its own file. The protocols are described in drivers/decode.
-std::unique_ptr<HidStation> make_wmr100_station(const StationTiming& timing);
-std::unique_ptr<HidStation> make_wmr300_station(const StationTiming& timing);
-std::unique_ptr<HidStation> make_fineoffset_station(const StationTiming& timing);
-std::unique_ptr<HidStation> make_acurite_station(const StationTiming& timing);
-std::unique_ptr<HidStation> make_te923_station(const StationTiming& timing);
+std::unique_ptr<Station> make_wmr100_station(const StationTiming& timing);
+std::unique_ptr<Station> make_wmr300_station(const StationTiming& timing);
+std::unique_ptr<Station> make_fineoffset_station(const StationTiming& timing);
+std::unique_ptr<Station> make_acurite_station(const StationTiming& timing);
+std::unique_ptr<Station> make_te923_station(const StationTiming& timing);
 
 /// Every family.
 std::span<const StationKind> station_kinds();

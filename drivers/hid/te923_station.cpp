@@ -16,11 +16,11 @@ constexpr Nanoseconds kTe923Reply = 3s;       // for the whole block
 constexpr Nanoseconds kTe923Report = 1200ms;  // for its next report
 constexpr int kTe923GiveUp = 4;               // failures in a row; then it is opened again
 
-class Te923Station final : public HidStation {
+class Te923Station final : public Station {
  public:
   explicit Te923Station(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidExchange& exchange) override {
+  Result<StationStep, Failure> step(Exchange& exchange) override {
     const MonoTime begin = exchange.now();
     if (!exchange.discard_waiting() || !exchange.send(decode::hid::encode_te923_request(decode::hid::kTe923Readings)))
       return station_is_gone();
@@ -50,11 +50,11 @@ class Te923Station final : public HidStation {
 
  private:
   /// Collects a block, or as much of it as comes. False: the device is gone.
-  bool read_block(HidExchange& exchange) {
+  bool read_block(Exchange& exchange) {
     size_ = 0;
     const MonoTime deadline = exchange.now() + kTe923Reply;
     while (size_ < decode::hid::kTe923Block && exchange.now() < deadline) {
-      const HidMessage message = exchange.read(kTe923Report);
+      const Message message = exchange.read(kTe923Report);
       if (message.status == bus::HidStatus::kLost) return false;
       if (message.status != bus::HidStatus::kReport) break;
       // The number of valid bytes, then these. An impossible number invalidates the block.
@@ -67,7 +67,7 @@ class Te923Station final : public HidStation {
     return true;
   }
 
-  Result<StationStep, Failure> fail(HidExchange& exchange, decode::Refusal why, const std::string& trouble) {
+  Result<StationStep, Failure> fail(Exchange& exchange, decode::Refusal why, const std::string& trouble) {
     exchange.refuse(why);
     if (++failures_ >= kTe923GiveUp) return Failure{trouble};
     return StationStep::unwell(exchange.now() + timing_.paced(kTe923Retry), trouble);
@@ -81,7 +81,7 @@ class Te923Station final : public HidStation {
 
 }  // namespace
 
-std::unique_ptr<HidStation> make_te923_station(const StationTiming& timing) {
+std::unique_ptr<Station> make_te923_station(const StationTiming& timing) {
   return std::make_unique<Te923Station>(timing);
 }
 

@@ -14,16 +14,16 @@ constexpr Nanoseconds kWmr100Restart = 30s;  // from one start report to the nex
 constexpr Nanoseconds kWmr100GiveUp = 180s;  // of silence; then the device is opened again
 constexpr Nanoseconds kWmr100NoWind = 90s;   // six missing winds
 
-class Wmr100Station final : public HidStation {
+class Wmr100Station final : public Station {
  public:
   explicit Wmr100Station(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidExchange& exchange) override {
+  Result<StationStep, Failure> step(Exchange& exchange) override {
     if (started_ == MonoTime{}) {
       if (!exchange.send(decode::hid::kWmr100Start)) return station_is_gone();
       started_ = received_at_ = wind_ = exchange.now();
     }
-    const HidMessage message = exchange.read(kWmr100Listen);
+    const Message message = exchange.read(kWmr100Listen);
     if (message.status == bus::HidStatus::kLost) return station_is_gone();
     if (message.status != bus::HidStatus::kReport) return bear_silence(exchange);
 
@@ -37,7 +37,7 @@ class Wmr100Station final : public HidStation {
 
  private:
   /// A frame ended.
-  void judge(const Result<decode::DecodedWind, decode::Refusal>& frame, HidExchange& exchange, StationStep& step) {
+  void judge(const Result<decode::DecodedWind, decode::Refusal>& frame, Exchange& exchange, StationStep& step) {
     exchange.publish(decode::hid::decode_wmr100_quantities(decode::hid::ended_wmr100_frame(stream_)));
     if (frame || frame.error() == decode::Refusal::kNotMine) received_at_ = step.next;
     if (!frame) {
@@ -55,7 +55,7 @@ class Wmr100Station final : public HidStation {
     step.trouble = "sends no wind: check the anemometer's battery and its distance to the console";
   }
 
-  Result<StationStep, Failure> bear_silence(HidExchange& exchange) {
+  Result<StationStep, Failure> bear_silence(Exchange& exchange) {
     const MonoTime now = exchange.now();
     const Nanoseconds silent = now - received_at_;
     if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
@@ -77,7 +77,7 @@ class Wmr100Station final : public HidStation {
 
 }  // namespace
 
-std::unique_ptr<HidStation> make_wmr100_station(const StationTiming& timing) {
+std::unique_ptr<Station> make_wmr100_station(const StationTiming& timing) {
   return std::make_unique<Wmr100Station>(timing);
 }
 

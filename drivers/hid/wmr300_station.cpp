@@ -15,11 +15,11 @@ constexpr Nanoseconds kWmr300HeartbeatEvery = 20s;
 constexpr Nanoseconds kWmr300NoWind = 15s;  // five winds that did not come
 constexpr Nanoseconds kWmr300GiveUp = 60s;  // of silence; then the device is opened again
 
-class Wmr300Station final : public HidStation {
+class Wmr300Station final : public Station {
  public:
   explicit Wmr300Station(const StationTiming& timing) : timing_(timing) {}
 
-  Result<StationStep, Failure> step(HidExchange& exchange) override {
+  Result<StationStep, Failure> step(Exchange& exchange) override {
     // The heartbeat.
     const MonoTime begin = exchange.now();
     if (begin >= next_heartbeat_) {
@@ -29,7 +29,7 @@ class Wmr300Station final : public HidStation {
     }
 
     const Nanoseconds until_heartbeat = next_heartbeat_ - begin;
-    const HidMessage message = exchange.read(std::min(kWmr300Listen, until_heartbeat));
+    const Message message = exchange.read(std::min(kWmr300Listen, until_heartbeat));
     if (message.status == bus::HidStatus::kLost) return station_is_gone();
     StationStep step = StationStep::same(exchange.now());
     if (message.status == bus::HidStatus::kReport && !take(message.bytes, exchange, step)) return station_is_gone();
@@ -39,7 +39,7 @@ class Wmr300Station final : public HidStation {
 
  private:
   /// Handles a packet. False: the device was gone when it was acknowledged.
-  bool take(decode::ByteSpan packet, HidExchange& exchange, StationStep& step) {
+  bool take(decode::ByteSpan packet, Exchange& exchange, StationStep& step) {
     const bool is_sound = decode::hid::is_sound_wmr300(packet);
     if (is_sound) received_at_ = step.next;
     if (!decode::hid::wants_wmr300_acknowledgement(packet)) {
@@ -63,7 +63,7 @@ class Wmr300Station final : public HidStation {
     return exchange.send(acknowledgement);
   }
 
-  Result<StationStep, Failure> miss_the_wind(HidExchange& exchange, StationStep step) {
+  Result<StationStep, Failure> miss_the_wind(Exchange& exchange, StationStep step) {
     if (step.next - received_at_ > timing_.paced(kWmr300GiveUp)) {
       exchange.refuse(decode::Refusal::kTimeout);
       return Failure{"sends no valid packets: reopening it"};
@@ -86,7 +86,7 @@ class Wmr300Station final : public HidStation {
 
 }  // namespace
 
-std::unique_ptr<HidStation> make_wmr300_station(const StationTiming& timing) {
+std::unique_ptr<Station> make_wmr300_station(const StationTiming& timing) {
   return std::make_unique<Wmr300Station>(timing);
 }
 

@@ -59,7 +59,7 @@ Result<MonoTime, Failure> UmbSensor::open(const sensor::Clock& clock) {
   return next_request_;
 }
 
-Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   const MonoTime start = clock.now().mono;
   if (!awaits_reply_) {
     if (start < next_request_) return next_request_;
@@ -92,7 +92,7 @@ Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::Se
 }
 
 /// False: the port is lost.
-bool UmbSensor::ask(MonoTime now, sensor::SensorSink& sink) {
+bool UmbSensor::ask(MonoTime now, sensor::Sink& sink) {
   using decode::lufft::kUmbChannels;
   using decode::lufft::kUmbWindChannels;
   drop_old_input();
@@ -114,7 +114,7 @@ void UmbSensor::drop_old_input() {
   }
 }
 
-void UmbSensor::take(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink) {
+void UmbSensor::take(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink) {
   while (const auto frame = assembler_.next(bytes)) {
     if (*frame) {
       take_frame(**frame, now, sink);
@@ -124,7 +124,7 @@ void UmbSensor::take(decode::ByteSpan bytes, const Instant& now, sensor::SensorS
   }
 }
 
-void UmbSensor::take_frame(decode::ByteSpan frame, const Instant& now, sensor::SensorSink& sink) {
+void UmbSensor::take_frame(decode::ByteSpan frame, const Instant& now, sensor::Sink& sink) {
   sink.raw(sensor::RawDirection::kReceived, frame);
   const auto reply = decode::lufft::decode_umb_reply(settings_.device, frame);
   if (reply) return take_reply(*reply, now, sink);
@@ -147,7 +147,7 @@ void UmbSensor::take_frame(decode::ByteSpan frame, const Instant& now, sensor::S
   }
 }
 
-void UmbSensor::take_reply(const decode::lufft::UmbReply& reply, const Instant& now, sensor::SensorSink& sink) {
+void UmbSensor::take_reply(const decode::lufft::UmbReply& reply, const Instant& now, sensor::Sink& sink) {
   awaits_reply_ = false;
   vain_requests_ = 0;
   auto quantities = decode::lufft::quantities_of(reply);
@@ -175,14 +175,14 @@ void UmbSensor::take_reply(const decode::lufft::UmbReply& reply, const Instant& 
                 .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood});
 }
 
-void UmbSensor::refuse(Refusal why, const std::string& trouble, sensor::SensorSink& sink) {
+void UmbSensor::refuse(Refusal why, const std::string& trouble, sensor::Sink& sink) {
   sink.refused(why);
   trouble_ = trouble;
   is_there_ = false;
 }
 
 /// The next request waits until a late reply has passed, which must not be taken for the next one.
-Result<void, Failure> UmbSensor::give_up_reply(MonoTime now, sensor::SensorSink& sink) {
+Result<void, Failure> UmbSensor::give_up_reply(MonoTime now, sensor::Sink& sink) {
   awaits_reply_ = false;
   next_request_ = now + std::max(kLatestReply, settings_.poll_interval);
   if (assembler_.cut()) {

@@ -32,17 +32,17 @@ class UmbSensor final : public sensor::ReopeningSensor {
 
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override;
   void close() noexcept override { port_->close(); }
 
  private:
-  bool ask(MonoTime now, sensor::SensorSink& sink);
+  bool ask(MonoTime now, sensor::Sink& sink);
   void drop_old_input();
-  void take(decode::ByteSpan bytes, const Instant& now, sensor::SensorSink& sink);
-  void take_frame(decode::ByteSpan frame, const Instant& now, sensor::SensorSink& sink);
-  void take_reply(const decode::lufft::UmbReply& reply, const Instant& now, sensor::SensorSink& sink);
-  void refuse(decode::Refusal why, const std::string& trouble, sensor::SensorSink& sink);
-  Result<void, Failure> give_up_reply(MonoTime now, sensor::SensorSink& sink);
+  void take(decode::ByteSpan bytes, const Instant& now, sensor::Sink& sink);
+  void take_frame(decode::ByteSpan frame, const Instant& now, sensor::Sink& sink);
+  void take_reply(const decode::lufft::UmbReply& reply, const Instant& now, sensor::Sink& sink);
+  void refuse(decode::Refusal why, const std::string& trouble, sensor::Sink& sink);
+  Result<void, Failure> give_up_reply(MonoTime now, sensor::Sink& sink);
   std::string silence_trouble() const;
 
   UmbSettings settings_;

@@ -2,7 +2,7 @@
 // a low band goes as a power of the speed. One to four channels, by PortAudio, in a process of its own.
 //
 //   mic-worker (process)                                this driver
-//   PortAudio -> SpscRing -> band powers, cross powers -> pipe -> coherence, noise floor, calibration -> WindReading
+//   PortAudio -> SpscRing -> band powers, cross powers -> pipe -> coherence, noise floor, calibration -> wind::Reading
 //
 // Sources: Morgan and Raspet 1992, "Investigation of the mechanisms of low-frequency wind noise generation outdoors";
 // Raspet, Webster and Dillion 2006, "Framework for wind noise studies" (stagnation pressure, f^-7/3); Nelke and Vary
@@ -28,40 +28,40 @@ namespace {
 using decode::microphone::MicEstimatorOptions;
 
 /// What the worker records.
-struct MicrophoneInput {
+struct Input {
   std::string device;
   std::string host_api;
   std::size_t channels = 1;
   double rate_hz = 0.0;
 };
 
-const Fields<MicrophoneInput> kInputFields = {
+const Fields<Input> kInputFields = {
     {{.name = "device",
       .default_value = std::string(""),
       .help =
           "part of the input's name, ignoring case, as `yuragi mic-worker --list` prints it; empty: the default input"},
-     &MicrophoneInput::device},
+     &Input::device},
     {{.name = "host_api",
       .default_value = std::string(""),
       .help = "part of the sound system's name (ALSA, JACK), if several have an input of that name"},
-     &MicrophoneInput::host_api},
+     &Input::host_api},
     {{"channels", "", std::int64_t{1}, 1, static_cast<double>(decode::microphone::kMicMaxChannels),
       "number of microphones; with two or more, sound that reaches all alike does not count as wind"},
-     &MicrophoneInput::channels},
-    {{"rate", "Hz", 0.0, 0.0, 192000.0, "sample rate; 0: the preferred rate of the device"}, &MicrophoneInput::rate_hz},
+     &Input::channels},
+    {{"rate", "Hz", 0.0, 0.0, 192000.0, "sample rate; 0: the preferred rate of the device"}, &Input::rate_hz},
 };
 
-struct MicrophoneKeys {
-  MicrophoneSettings settings;
+struct Keys {
+  Settings settings;
   std::string faces;
   std::string worker;
 };
 
 auto of_estimator(auto member) {
-  return member_of(&MicrophoneKeys::settings, &MicrophoneSettings::estimator, member);
+  return member_of(&Keys::settings, &Settings::estimator, member);
 }
 
-const Fields<MicrophoneKeys> kMicrophoneFields = {
+const Fields<Keys> kMicrophoneFields = {
     {{"noise_memory", "s", 86400.0, 60.0, 604800.0,
       "memory of levels for this; no noise is subtracted in the first hour"},
      of_estimator(&MicEstimatorOptions::noise_memory_s)},
@@ -74,7 +74,7 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
       .default_value = std::string(""),
       .help = "the directions that three or four microphones face, clockwise from north, such as \"0 120 240\"; empty: "
               "no direction"},
-     &MicrophoneKeys::faces},
+     &Keys::faces},
     {{"direction_smoothing", "s", 5.0, 0.5, 600.0, "time constant of the direction, smoothed as a vector"},
      of_estimator(&MicEstimatorOptions::direction_smoothing_s)},
     {{"least_confidence", "", 0.3, 0.0, 1.0, "minimum confidence of a direction; a reading below it has no direction"},
@@ -82,10 +82,10 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
     {{"window", "s", 1.0, 0.25, 60.0, "averaging time of each reading; there are four readings per second"},
      of_estimator(&MicEstimatorOptions::window_s)},
     {{"timeout", "s", 3.0, 1.0, 60.0, "silence from the worker after which it is killed and started again"},
-     [](MicrophoneKeys& keys) -> Nanoseconds& { return keys.settings.sound_timeout; },
+     [](Keys& keys) -> Nanoseconds& { return keys.settings.sound_timeout; },
      from_seconds},
     {{.name = "worker", .default_value = std::string(""), .help = "path of the worker program; empty: this program"},
-     &MicrophoneKeys::worker},
+     &Keys::worker},
 };
 
 const std::vector<Parameter> kMicrophoneParameters =
@@ -113,8 +113,8 @@ std::vector<double> parse_faces(const std::string& text) {
 }
 
 /// Throws if they cannot work together.
-MicrophoneSettings settings_of(const MicrophoneKeys& keys, const MicLevelSettings& level, std::size_t channels) {
-  MicrophoneSettings settings = keys.settings;
+Settings settings_of(const Keys& keys, const MicLevelSettings& level, std::size_t channels) {
+  Settings settings = keys.settings;
   MicEstimatorOptions& estimator = settings.estimator;
   settings.is_calibrated = level.is_calibrated;
   estimator.calibration = level.calibration;
@@ -138,9 +138,9 @@ MicrophoneSettings settings_of(const MicrophoneKeys& keys, const MicLevelSetting
 }
 
 std::unique_ptr<sensor::Sensor> open_microphone(const ParameterValues& values) {
-  const MicrophoneInput input = kInputFields.of(values);
+  const Input input = kInputFields.of(values);
   const MicLevelSettings level = mic_level_settings_of(values);
-  const MicrophoneKeys keys = kMicrophoneFields.of(values);
+  const Keys keys = kMicrophoneFields.of(values);
   std::vector<std::string> command = {keys.worker.empty() ? microphone_worker_program() : keys.worker,
                                       "mic-worker",
                                       fmt::format("--channels={}", input.channels),
@@ -149,8 +149,8 @@ std::unique_ptr<sensor::Sensor> open_microphone(const ParameterValues& values) {
                                       fmt::format("--band-high={}", level.band_high_hz)};
   if (!input.device.empty()) command.push_back("--device=" + input.device);
   if (!input.host_api.empty()) command.push_back("--host-api=" + input.host_api);
-  return std::make_unique<MicrophoneSensor>(settings_of(keys, level, input.channels), sensor::seed_of(input.device),
-                                            bus::make_process_port(std::move(command)));
+  return std::make_unique<Sensor>(settings_of(keys, level, input.channels), sensor::seed_of(input.device),
+                                  bus::make_process_port(std::move(command)));
 }
 
 /// A part of a name selects the first input that has it, so that a shorter part may select the same one. Sensors with
@@ -164,7 +164,7 @@ sensor::ValueSelection microphone_selection(const ParameterValues& values) {
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
   };
-  const MicrophoneInput input = kInputFields.of(values);
+  const Input input = kInputFields.of(values);
   const std::string device = lower(input.device);
   const std::string host_api = lower(input.host_api);
   return {.device = device.empty() && host_api.empty() ? "the default sound input" : "sound input",

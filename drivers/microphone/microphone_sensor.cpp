@@ -16,10 +16,10 @@ constexpr int kMaxPatience = 8;
 
 }  // namespace
 
-MicrophoneSensor::MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port)
+Sensor::Sensor(Settings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port)
     : sensor::ReopeningSensor(seed), settings_(std::move(settings)), port_(std::move(port)) {}
 
-Result<MonoTime, Failure> MicrophoneSensor::open(const sensor::Clock& clock) {
+Result<MonoTime, Failure> Sensor::open(const sensor::Clock& clock) {
   reader_.clear();
   hello_.reset();
   trouble_.clear();
@@ -30,11 +30,11 @@ Result<MonoTime, Failure> MicrophoneSensor::open(const sensor::Clock& clock) {
   return now;
 }
 
-void MicrophoneSensor::close() noexcept {
+void Sensor::close() noexcept {
   port_->close();
 }
 
-Result<MonoTime, Failure> MicrophoneSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> Sensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   const bus::ByteArrival arrival = port_->read(buffer_, std::max(Nanoseconds::zero(), deadline_ - clock.now().mono));
   reader_.push(std::span(buffer_).first(arrival.size));
   while (const auto item = reader_.next()) take(*item, clock, sink);
@@ -64,8 +64,8 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const sensor::Clock& clock, sen
                                       seconds(start_timeout_))};
 }
 
-void MicrophoneSensor::take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock,
-                            sensor::SensorSink& sink) {
+void Sensor::take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock,
+                  sensor::Sink& sink) {
   if (!item.bytes.empty()) sink.raw(sensor::RawDirection::kReceived, item.bytes);
   if (!item.frame) return sink.refused(item.frame.error());
   const Instant now = clock.now();
@@ -83,7 +83,7 @@ void MicrophoneSensor::take(const decode::microphone::MicFrameReader::Item& item
 
 /// A stream begins. What was estimated from an earlier one (the noise of a calm, automatic gain, gusts) is kept if its
 /// format is the same.
-void MicrophoneSensor::take(const decode::microphone::MicHello& hello) {
+void Sensor::take(const decode::microphone::MicHello& hello) {
   if (estimator_ && estimator_->hello() == hello) {
     estimator_->restart();
   } else {
@@ -97,7 +97,7 @@ void MicrophoneSensor::take(const decode::microphone::MicHello& hello) {
   hello_ = hello;
 }
 
-void MicrophoneSensor::take(const decode::microphone::MicBlock& block, const Instant& now, sensor::SensorSink& sink) {
+void Sensor::take(const decode::microphone::MicBlock& block, const Instant& now, sensor::Sink& sink) {
   if (!estimator_) return report_unusable(sink, trouble_);
   const auto estimate = estimator_->add(block);
   if (estimate) {
@@ -119,9 +119,8 @@ void MicrophoneSensor::take(const decode::microphone::MicBlock& block, const Ins
                                                     : "digital silence: check that it is not muted, and its plug"));
 }
 
-void MicrophoneSensor::publish(const decode::microphone::MicEstimate& estimate,
-                               const decode::microphone::MicBlock& block, const Instant& now,
-                               sensor::SensorSink& sink) {
+void Sensor::publish(const decode::microphone::MicEstimate& estimate, const decode::microphone::MicBlock& block,
+                     const Instant& now, sensor::Sink& sink) {
   // The block's stamp is of the system's monotonic clock; it is used only if that can be ours.
   const MonoTime end{Nanoseconds(block.end_mono_ns)};
   const bool is_ours = end <= now.mono && now.mono - end < kBelievableAge;
@@ -139,7 +138,7 @@ void MicrophoneSensor::publish(const decode::microphone::MicEstimate& estimate,
 }
 
 /// For people; changes only with what is to be done.
-std::string MicrophoneSensor::detail(const decode::microphone::MicEstimate& estimate) const {
+std::string Sensor::detail(const decode::microphone::MicEstimate& estimate) const {
   std::string text = hello_->device;
   if (!settings_.is_calibrated) text += "; not calibrated: set gain and exponent, or curve";
   if (estimate.suspects_automatic_gain) text += "; its level hardly follows the wind: switch automatic gain off";

@@ -14,7 +14,7 @@
 
 namespace yuragi::drivers::microphone {
 
-struct MicrophoneSettings {
+struct Settings {
   decode::microphone::MicEstimatorOptions estimator{};
   bool is_calibrated = false;  ///< if not, every reading is uncertain
   /// For the worker's first frame: sound systems start slowly. After each start that took too long it is doubled, up to
@@ -26,26 +26,26 @@ struct MicrophoneSettings {
 /// Wind by microphone. The sound library runs in another process, the worker, whose frames come through `port`; this is
 /// its watchdog: a worker that ends, sends no valid frame in time, or reports a failure is killed and started again,
 /// without limit. One reading per block, with the time of the middle of the window that it is the mean of.
-class MicrophoneSensor final : public sensor::ReopeningSensor {
+class Sensor final : public sensor::ReopeningSensor {
  public:
-  MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port);
+  Sensor(Settings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port);
 
   void interrupt() noexcept override { port_->interrupt(); }
 
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override;
   void close() noexcept override;
 
  private:
-  void take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock, sensor::SensorSink& sink);
+  void take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock, sensor::Sink& sink);
   void take(const decode::microphone::MicHello& hello);
-  void take(const decode::microphone::MicBlock& block, const Instant& now, sensor::SensorSink& sink);
+  void take(const decode::microphone::MicBlock& block, const Instant& now, sensor::Sink& sink);
   void publish(const decode::microphone::MicEstimate& estimate, const decode::microphone::MicBlock& block,
-               const Instant& now, sensor::SensorSink& sink);
+               const Instant& now, sensor::Sink& sink);
   std::string detail(const decode::microphone::MicEstimate& estimate) const;
 
-  MicrophoneSettings settings_;
+  Settings settings_;
   std::unique_ptr<bus::BytePort> port_;
   decode::microphone::MicFrameReader reader_;
   std::optional<decode::microphone::MicHello> hello_;

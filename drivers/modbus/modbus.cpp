@@ -20,17 +20,15 @@
 namespace yuragi::drivers::modbus {
 namespace {
 
-using decode::modbus::ModbusFraming;
-
-/// In the order of ModbusFraming.
+/// In the order of decode::modbus::Framing.
 constexpr std::array<std::string_view, 2> kTransports = {"tcp", "rtu"};
 constexpr std::array<std::string_view, 4> kParityChoices = {"profile", "none", "even", "odd"};
 
 /// kModbusFields defines each; 0 and empty times are the profile's.
-struct ModbusKeys {
+struct Keys {
   std::string profile;
   std::string profile_dir;
-  ModbusFraming framing = ModbusFraming::kTcp;
+  decode::modbus::Framing framing = decode::modbus::Framing::kTcp;
   std::string host;
   std::uint16_t port = 0;
   std::string device;
@@ -50,59 +48,59 @@ char letter_of_parity(const std::string& word) {
   return word == "none" ? 'N' : word == "even" ? 'E' : word == "odd" ? 'O' : '\0';
 }
 
-const Fields<ModbusKeys> kModbusFields = {
+const Fields<Keys> kModbusFields = {
     {{.name = "profile",
       .default_value = std::string("renke-rs-fsjt-rs-fxjt-n01"),
       .help = "the device's register map: a name in drivers/modbus/profiles, or the path of a .toml file"},
-     &ModbusKeys::profile},
+     &Keys::profile},
     {{.name = "profile_dir",
       .default_value = std::string(""),
       .help = "a directory that is searched for profiles first"},
-     &ModbusKeys::profile_dir},
+     &Keys::profile_dir},
     {{.name = "transport",
       .default_value = std::string("tcp"),
       .help = "tcp: a device or gateway in the network; rtu: a serial port",
       .choices = kTransports},
-     &ModbusKeys::framing},
-    {{.name = "host", .default_value = std::string("127.0.0.1"), .help = "tcp: name or address"}, &ModbusKeys::host},
-    {{"port", "", std::int64_t{502}, 1, 65535, "tcp: port"}, &ModbusKeys::port},
+     &Keys::framing},
+    {{.name = "host", .default_value = std::string("127.0.0.1"), .help = "tcp: name or address"}, &Keys::host},
+    {{"port", "", std::int64_t{502}, 1, 65535, "tcp: port"}, &Keys::port},
     {{.name = "device",
       .default_value = std::string(""),
       .help = "rtu: the serial port, preferably by its stable name in /dev/serial/by-id"},
-     &ModbusKeys::device},
+     &Keys::device},
     {{.name = "direction_device",
       .default_value = std::string(""),
       .help = "rtu: the serial port of the vane, if it is on a separate line"},
-     &ModbusKeys::direction_device},
-    {{"baud", "bit/s", std::int64_t{0}, 0, 115200, "rtu: 0: the profile's"}, &ModbusKeys::baud},
+     &Keys::direction_device},
+    {{"baud", "bit/s", std::int64_t{0}, 0, 115200, "rtu: 0: the profile's"}, &Keys::baud},
     {{.name = "parity",
       .default_value = std::string("profile"),
       .help = "rtu: \"profile\": the profile's",
       .choices = kParityChoices},
-     &ModbusKeys::parity,
+     &Keys::parity,
      letter_of_parity},
-    {{"stop_bits", "", std::int64_t{0}, 0, 2, "rtu: 0: the profile's"}, &ModbusKeys::stop_bits},
+    {{"stop_bits", "", std::int64_t{0}, 0, 2, "rtu: 0: the profile's"}, &Keys::stop_bits},
     {{"speed_slave", "", std::int64_t{0}, 0, 247,
       "id of the slave that measures speed, and the other quantities that the profile reads from it; 0: the profile's"},
-     &ModbusKeys::speed_slave},
+     &Keys::speed_slave},
     {{"direction_slave", "", std::int64_t{0}, 0, 247, "id of the slave that measures direction; 0: the profile's"},
-     &ModbusKeys::direction_slave},
+     &Keys::direction_slave},
     {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between readings; 0: the profile's"},
-     &ModbusKeys::poll_interval,
+     &Keys::poll_interval,
      from_seconds},
     {{"min_gap", "s", 0.0, 0.0, 10.0,
       "minimum time from a reply to the next request on this line, for adapters that switch direction slowly; 0: the "
       "profile's"},
-     &ModbusKeys::min_gap,
+     &Keys::min_gap,
      from_seconds},
     {{"response_timeout", "s", 0.0, 0.0, 10.0, "maximum wait for a reply, and for a connection; 0: the profile's"},
-     &ModbusKeys::response_timeout,
+     &Keys::response_timeout,
      from_seconds},
 };
 
 /// The profile with the settings of the installation.
-ModbusProfile profile_of(const ModbusKeys& keys) {
-  ModbusProfile profile = load_modbus_profile(keys.profile, keys.profile_dir);
+Profile profile_of(const Keys& keys) {
+  Profile profile = load_modbus_profile(keys.profile, keys.profile_dir);
   if (keys.baud != 0) profile.baud = keys.baud;
   if (keys.parity != 0) profile.parity = keys.parity;
   if (keys.stop_bits != 0) profile.stop_bits = keys.stop_bits;
@@ -118,7 +116,7 @@ ModbusProfile profile_of(const ModbusKeys& keys) {
   return profile;
 }
 
-bus::ModbusLine line_of(const ModbusKeys& keys, const ModbusProfile& profile) {
+bus::ModbusLine line_of(const Keys& keys, const Profile& profile) {
   bus::ModbusLine line{.framing = keys.framing,
                        .host = keys.host,
                        .port = keys.port,
@@ -128,7 +126,7 @@ bus::ModbusLine line_of(const ModbusKeys& keys, const ModbusProfile& profile) {
                        .stop_bits = profile.stop_bits};
   line.connect_timeout = std::max(profile.response_timeout, line.connect_timeout);
 
-  if (line.framing == ModbusFraming::kTcp) {
+  if (line.framing == decode::modbus::Framing::kTcp) {
     if (line.host.empty())
       throw std::runtime_error("host: is empty; give the name or address of the device or gateway");
     return line;
@@ -147,10 +145,9 @@ bus::ModbusLine line_of(const ModbusKeys& keys, const ModbusProfile& profile) {
 }
 
 /// Returns the separate line of the vane; nullptr if it has none.
-std::shared_ptr<ModbusBus> direction_bus_of(const ModbusKeys& keys, const ModbusProfile& profile,
-                                            const bus::ModbusLine& line) {
+std::shared_ptr<Bus> direction_bus_of(const Keys& keys, const Profile& profile, const bus::ModbusLine& line) {
   if (keys.direction_device.empty()) return nullptr;
-  if (line.framing != ModbusFraming::kRtu) {
+  if (line.framing != decode::modbus::Framing::kRtu) {
     throw std::runtime_error("direction_device: is only for transport rtu; with tcp both slaves have the same host");
   }
   if (!profile.direction) {
@@ -162,18 +159,18 @@ std::shared_ptr<ModbusBus> direction_bus_of(const ModbusKeys& keys, const Modbus
 }
 
 std::unique_ptr<sensor::Sensor> open_modbus(const ParameterValues& values) {
-  const ModbusKeys keys = kModbusFields.of(values);
-  ModbusProfile profile = profile_of(keys);
+  const Keys keys = kModbusFields.of(values);
+  Profile profile = profile_of(keys);
   const bus::ModbusLine line = line_of(keys, profile);
   const std::uint32_t seed = sensor::seed_of(describe(line) + profile.name + std::to_string(profile.speed.slave));
   const auto direction_bus = direction_bus_of(keys, profile, line);
-  return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), direction_bus, seed);
+  return std::make_unique<Sensor>(std::move(profile), shared_modbus_bus(line), direction_bus, seed);
 }
 
-/// Sensors on one line share it (ModbusBus); devices and gateways in a network have no line.
+/// Sensors on one line share it (Bus); devices and gateways in a network have no line.
 std::vector<sensor::Endpoint> modbus_endpoints(const ParameterValues& values) {
-  const ModbusKeys keys = kModbusFields.of(values);
-  if (keys.framing == ModbusFraming::kTcp)
+  const Keys keys = kModbusFields.of(values);
+  if (keys.framing == decode::modbus::Framing::kTcp)
     return {{.kind = sensor::EndpointKind::kServer, .name = to_string(Address{keys.host, keys.port})}};
   std::vector<sensor::Endpoint> lines;
   for (const std::string& device : {keys.device, keys.direction_device}) {
@@ -188,9 +185,9 @@ std::vector<sensor::Endpoint> modbus_endpoints(const ParameterValues& values) {
 
 /// The register that holds the speed: sensors may have a vane in common.
 sensor::ValueSelection modbus_selection(const ParameterValues& values) {
-  const ModbusKeys keys = kModbusFields.of(values);
-  const ModbusProfile profile = profile_of(keys);
-  const bool is_tcp = keys.framing == ModbusFraming::kTcp;
+  const Keys keys = kModbusFields.of(values);
+  const Profile profile = profile_of(keys);
+  const bool is_tcp = keys.framing == decode::modbus::Framing::kTcp;
   return {.device =
               is_tcp ? "Modbus line " +
                            bus::device_of({.kind = bus::BytePortKind::kTcpClient, .host = keys.host, .port = keys.port})
@@ -206,7 +203,7 @@ std::vector<sensor::KnownDevice> known_modbus_devices() {
   std::vector<sensor::KnownDevice> devices;
   for (const std::string& name : modbus_profile_names("")) {
     try {
-      const ModbusProfile profile = load_modbus_profile(name, "");
+      const Profile profile = load_modbus_profile(name, "");
       sensor::KnownDevice device = {
           .name = name, .device = profile.name, .unconfirmed = profile.unconfirmed, .value = profile.value};
       for (const ProfileEvidence evidence : profile.confirmed_by) {
@@ -235,13 +232,13 @@ std::optional<sensor::StatedValue> modbus_value(const ParameterValues& values) {
 }
 
 sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
-  const ModbusProfile profile = profile_of(kModbusFields.of(values));
+  const Profile profile = profile_of(kModbusFields.of(values));
   return {.direction = profile.direction.has_value(), .gust = profile.gust.has_value()};
 }
 
 /// yuragi-sim plays one line.
 Result<sensor::SimulatedDevice, Failure> modbus_simulated(const ParameterValues& values) {
-  const ModbusKeys keys = kModbusFields.of(values);
+  const Keys keys = kModbusFields.of(values);
   if (!keys.direction_device.empty()) return Failure{"yuragi-sim simulates only one line: leave out direction_device"};
   if (keys.direction_slave != 0 && keys.direction_slave != keys.speed_slave &&
       keys.direction_slave != keys.speed_slave + 1)

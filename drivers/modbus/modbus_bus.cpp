@@ -17,13 +17,12 @@ namespace {
 /// it is assumed lost.
 constexpr int kSilentRequestsBeforeReopen = 3;
 
-ModbusTrouble trouble(ModbusTrouble::Kind kind) {
+Trouble trouble(Trouble::Kind kind) {
   return {kind, {}};
 }
 
-void show_sent(decode::modbus::ModbusFraming framing, const decode::modbus::ModbusRequest& request,
-               sensor::SensorSink& sink) {
-  if (framing == decode::modbus::ModbusFraming::kTcp) {
+void show_sent(decode::modbus::Framing framing, const decode::modbus::Request& request, sensor::Sink& sink) {
+  if (framing == decode::modbus::Framing::kTcp) {
     sink.raw(sensor::RawDirection::kSent, decode::modbus::encode_tcp(request));
   } else {
     sink.raw(sensor::RawDirection::kSent, decode::modbus::encode_rtu(request));
@@ -37,7 +36,7 @@ std::string settings_of(const bus::ModbusLine& line) {
 
 /// The key of a line: the same for all its names.
 std::string address_of(const bus::ModbusLine& line) {
-  if (line.framing == decode::modbus::ModbusFraming::kTcp) return describe(line);
+  if (line.framing == decode::modbus::Framing::kTcp) return describe(line);
   std::error_code ignored;
   const auto port = std::filesystem::canonical(line.device, ignored);
   return ignored ? line.device : port.string();
@@ -46,9 +45,9 @@ std::string address_of(const bus::ModbusLine& line) {
 }  // namespace
 
 /// A place in the queue: taken at its end, and left when this object is destroyed. The first in the queue has the line.
-class ModbusBus::Turn {
+class Bus::Turn {
  public:
-  Turn(ModbusBus& bus, const bus::Interruption& interruption) : bus_(bus) {
+  Turn(Bus& bus, const bus::Interruption& interruption) : bus_(bus) {
     std::unique_lock lock(bus_.mutex_);
     ticket_ = ++bus_.last_ticket_;
     bus_.waiting_.push_back(ticket_);
@@ -88,29 +87,29 @@ class ModbusBus::Turn {
  private:
   bool is_first() const { return bus_.waiting_.front() == ticket_; }
 
-  ModbusBus& bus_;
+  Bus& bus_;
   std::uint64_t ticket_ = 0;
   bool has_line_ = false;
 };
 
-ModbusBus::ModbusBus(const bus::ModbusLine& line, std::unique_ptr<bus::ModbusConnection> connection)
+Bus::Bus(const bus::ModbusLine& line, std::unique_ptr<bus::ModbusConnection> connection)
     : line_(line), where_(describe(line)), min_gap_(bus::frame_gap(line)), connection_(std::move(connection)) {}
 
-Result<void, Failure> ModbusBus::suits(const bus::ModbusLine& line) const {
+Result<void, Failure> Bus::suits(const bus::ModbusLine& line) const {
   const bool is_same = line.baud == line_.baud && line.parity == line_.parity && line.stop_bits == line_.stop_bits;
-  if (line.framing == decode::modbus::ModbusFraming::kTcp || is_same) return {};
+  if (line.framing == decode::modbus::Framing::kTcp || is_same) return {};
   return Failure{
       fmt::format("{} is used with {} by another sensor, and cannot have {} at the same time: give both the "
                   "same baud, parity and stop_bits",
                   where_, settings_of(line_), settings_of(line))};
 }
 
-void ModbusBus::keep_gap(Nanoseconds min_gap) {
+void Bus::keep_gap(Nanoseconds min_gap) {
   const std::lock_guard lock(mutex_);
   min_gap_ = std::max(min_gap_, min_gap);
 }
 
-Result<MonoTime, Failure> ModbusBus::open(const bus::Interruption& interruption, const sensor::Clock& clock) {
+Result<MonoTime, Failure> Bus::open(const bus::Interruption& interruption, const sensor::Clock& clock) {
   // Usually it is open, and this returns without waiting for the line.
   const auto open_since = [this] {
     const std::lock_guard lock(mutex_);
@@ -129,15 +128,14 @@ Result<MonoTime, Failure> ModbusBus::open(const bus::Interruption& interruption,
   return *open_since_;
 }
 
-MonoTime ModbusBus::ready_at(std::uint8_t unit) const {
+MonoTime Bus::ready_at(std::uint8_t unit) const {
   const std::lock_guard lock(mutex_);
   return unit_ready_at_[unit];
 }
 
-ModbusBus::Reply ModbusBus::exchange(decode::modbus::ModbusRequest request, const bus::ModbusPatience& patience,
-                                     const bus::Interruption& interruption, const sensor::Clock& clock,
-                                     sensor::SensorSink& sink) {
-  using enum ModbusTrouble::Kind;
+Bus::Reply Bus::exchange(decode::modbus::Request request, const bus::ModbusPatience& patience,
+                         const bus::Interruption& interruption, const sensor::Clock& clock, sensor::Sink& sink) {
+  using enum Trouble::Kind;
   Turn turn(*this, interruption);
   if (!turn.has_line() || !turn.wait_for_gap(interruption, clock.now().mono)) return trouble(kInterrupted);
 
@@ -149,30 +147,30 @@ ModbusBus::Reply ModbusBus::exchange(decode::modbus::ModbusRequest request, cons
   turn.begin_gap(now);
   const bool may_come_late = !reply && (reply.error().kind == kSilence || reply.error().kind == kOthersOnly ||
                                         reply.error().refusal.why == decode::Refusal::kTooShort);
-  if (may_come_late && line_.framing == decode::modbus::ModbusFraming::kRtu) {
+  if (may_come_late && line_.framing == decode::modbus::Framing::kRtu) {
     turn.expect_late_reply(request.unit, now + patience.response_timeout);
   }
   return reply;
 }
 
-std::size_t ModbusBus::waiting_count() const {
+std::size_t Bus::waiting_count() const {
   const std::lock_guard lock(mutex_);
   return waiting_.size();
 }
 
-void ModbusBus::wake_waiters() noexcept {
+void Bus::wake_waiters() noexcept {
   const std::lock_guard lock(mutex_);
   turn_ended_.notify_all();
 }
 
-void ModbusBus::close_line() noexcept {
+void Bus::close_line() noexcept {
   connection_->close();
   const std::lock_guard lock(mutex_);
   open_since_.reset();
 }
 
-ModbusBus::Reply ModbusBus::transact(const decode::modbus::ModbusRequest& request, const bus::ModbusPatience& patience,
-                                     const bus::Interruption& interruption, sensor::SensorSink& sink) {
+Bus::Reply Bus::transact(const decode::modbus::Request& request, const bus::ModbusPatience& patience,
+                         const bus::Interruption& interruption, sensor::Sink& sink) {
   if (is_unsettled_) {
     const std::size_t leftover = connection_->settle(buffer_, patience, interruption);
     const auto bytes = std::span(buffer_).first(leftover);
@@ -181,14 +179,14 @@ ModbusBus::Reply ModbusBus::transact(const decode::modbus::ModbusRequest& reques
     if (leftover > 0 && decode::modbus::modbus_crc(bytes) == 0) sink.refused(decode::Refusal::kNotMine);
   }
   is_unsettled_ = true;
-  if (!connection_->send(request, patience)) return fail(bus::BusStatus::kLost, false, sink);
+  if (!connection_->send(request, patience)) return fail(bus::Status::kLost, false, sink);
   show_sent(line_.framing, request, sink);
 
   // Messages of others, such as the late reply to an earlier request, are skipped until the time-out.
   bool received_others = false;
   for (;;) {
-    const bus::BusMessage message = connection_->receive(buffer_, interruption);
-    if (message.status != bus::BusStatus::kMessage) return fail(message.status, received_others, sink);
+    const bus::Message message = connection_->receive(buffer_, interruption);
+    if (message.status != bus::Status::kMessage) return fail(message.status, received_others, sink);
     const auto bytes = std::span(buffer_).first(message.size);
     sink.raw(sensor::RawDirection::kReceived, bytes);
 
@@ -205,22 +203,22 @@ ModbusBus::Reply ModbusBus::transact(const decode::modbus::ModbusRequest& reques
 }
 
 /// No message came.
-ModbusTrouble ModbusBus::fail(bus::BusStatus status, bool received_others, sensor::SensorSink& sink) {
-  using enum ModbusTrouble::Kind;
+Trouble Bus::fail(bus::Status status, bool received_others, sensor::Sink& sink) {
+  using enum Trouble::Kind;
   switch (status) {
-    case bus::BusStatus::kSilence:
+    case bus::Status::kSilence:
       if (++silent_requests_ >= kSilentRequestsBeforeReopen) close_line();
       if (received_others) return trouble(kOthersOnly);
       sink.refused(decode::Refusal::kTimeout);
       return trouble(kSilence);
-    case bus::BusStatus::kCutOff:
+    case bus::Status::kCutOff:
       return refuse({decode::Refusal::kTooShort}, sink);
-    case bus::BusStatus::kGarbled:
+    case bus::Status::kGarbled:
       return refuse({decode::Refusal::kMalformed}, sink);
-    case bus::BusStatus::kInterrupted:
+    case bus::Status::kInterrupted:
       return trouble(kInterrupted);
-    case bus::BusStatus::kMessage:
-    case bus::BusStatus::kLost:
+    case bus::Status::kMessage:
+    case bus::Status::kLost:
       break;
   }
   close_line();
@@ -228,25 +226,25 @@ ModbusTrouble ModbusBus::fail(bus::BusStatus status, bool received_others, senso
 }
 
 /// A message came and was refused. Where one TCP message ends and the next begins is not known any more.
-ModbusTrouble ModbusBus::refuse(const decode::modbus::ModbusRefusal& refusal, sensor::SensorSink& sink) {
+Trouble Bus::refuse(const decode::modbus::RefusedReply& refusal, sensor::Sink& sink) {
   sink.refused(refusal.why);
-  if (refusal.why != decode::Refusal::kException && line_.framing == decode::modbus::ModbusFraming::kTcp) close_line();
-  return {ModbusTrouble::Kind::kRefused, refusal};
+  if (refusal.why != decode::Refusal::kException && line_.framing == decode::modbus::Framing::kTcp) close_line();
+  return {Trouble::Kind::kRefused, refusal};
 }
 
-std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line) {
+std::shared_ptr<Bus> shared_modbus_bus(const bus::ModbusLine& line) {
   static std::mutex mutex;
-  static std::map<std::string, std::weak_ptr<ModbusBus>> buses;
+  static std::map<std::string, std::weak_ptr<Bus>> buses;
 
   const std::lock_guard lock(mutex);
   std::erase_if(buses, [](const auto& entry) { return entry.second.expired(); });
-  std::weak_ptr<ModbusBus>& known = buses[address_of(line)];
-  std::shared_ptr<ModbusBus> bus = known.lock();
+  std::weak_ptr<Bus>& known = buses[address_of(line)];
+  std::shared_ptr<Bus> bus = known.lock();
   if (bus) {
     if (const auto suits = bus->suits(line); !suits) throw sensor::LineInUse(suits.error().message);
     return bus;
   }
-  bus = std::make_shared<ModbusBus>(line, bus::make_modbus_connection(line));
+  bus = std::make_shared<Bus>(line, bus::make_modbus_connection(line));
   known = bus;
   return bus;
 }

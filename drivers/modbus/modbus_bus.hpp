@@ -15,7 +15,7 @@
 namespace yuragi::drivers::modbus {
 
 /// Why a request gave no registers. Refusals have been counted.
-struct ModbusTrouble {
+struct Trouble {
   enum class Kind : std::uint8_t {
     kSilence,      ///< nothing came in time
     kOthersOnly,   ///< only messages of other slaves came
@@ -24,7 +24,7 @@ struct ModbusTrouble {
     kInterrupted,  ///< the interruption was set
   };
   Kind kind = Kind::kSilence;
-  decode::modbus::ModbusRefusal refusal;  ///< for kRefused
+  decode::modbus::RefusedReply refusal;  ///< for kRefused
 };
 
 /// One line with Modbus devices: a serial port, or a host and port. All sensors on that line share it, each from a
@@ -37,15 +37,15 @@ struct ModbusTrouble {
 ///
 /// Thread-safe: yes. A caller waits for those before it, each for one response time-out at most; its `interruption`
 /// ends that.
-class ModbusBus {
+class Bus {
  public:
-  using Reply = Result<decode::modbus::ModbusRegisters, ModbusTrouble>;
+  using Reply = Result<decode::modbus::Registers, Trouble>;
 
-  ModbusBus(const bus::ModbusLine& line, std::unique_ptr<bus::ModbusConnection> connection);
+  Bus(const bus::ModbusLine& line, std::unique_ptr<bus::ModbusConnection> connection);
 
   /// The line, for people.
   const std::string& where() const noexcept { return where_; }
-  decode::modbus::ModbusFraming framing() const noexcept { return line_.framing; }
+  decode::modbus::Framing framing() const noexcept { return line_.framing; }
 
   /// Can sensors with these settings share it? The failure's text is what differs.
   Result<void, Failure> suits(const bus::ModbusLine& line) const;
@@ -61,8 +61,8 @@ class ModbusBus {
 
   /// Sends a request and waits for the reply. Sets the request's transaction id. Counts refusals in `sink`, and shows
   /// it each message.
-  Reply exchange(decode::modbus::ModbusRequest request, const bus::ModbusPatience& patience,
-                 const bus::Interruption& interruption, const sensor::Clock& clock, sensor::SensorSink& sink);
+  Reply exchange(decode::modbus::Request request, const bus::ModbusPatience& patience,
+                 const bus::Interruption& interruption, const sensor::Clock& clock, sensor::Sink& sink);
 
   /// How many exchanges are waiting or in progress.
   std::size_t waiting_count() const;
@@ -74,10 +74,10 @@ class ModbusBus {
   class Turn;
 
   void close_line() noexcept;
-  Reply transact(const decode::modbus::ModbusRequest& request, const bus::ModbusPatience& patience,
-                 const bus::Interruption& interruption, sensor::SensorSink& sink);
-  ModbusTrouble fail(bus::BusStatus status, bool received_others, sensor::SensorSink& sink);
-  ModbusTrouble refuse(const decode::modbus::ModbusRefusal& refusal, sensor::SensorSink& sink);
+  Reply transact(const decode::modbus::Request& request, const bus::ModbusPatience& patience,
+                 const bus::Interruption& interruption, sensor::Sink& sink);
+  Trouble fail(bus::Status status, bool received_others, sensor::Sink& sink);
+  Trouble refuse(const decode::modbus::RefusedReply& refusal, sensor::Sink& sink);
 
   const bus::ModbusLine line_;
   const std::string where_;
@@ -102,6 +102,6 @@ class ModbusBus {
 /// The bus of that line: the existing one, if another sensor has it, or a new one. A serial port is identified by the
 /// device that its name links to. Throws std::runtime_error if it is in use with another baud rate, parity or number
 /// of stop bits. Thread-safe: yes.
-std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line);
+std::shared_ptr<Bus> shared_modbus_bus(const bus::ModbusLine& line);
 
 }  // namespace yuragi::drivers::modbus

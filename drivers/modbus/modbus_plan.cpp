@@ -6,20 +6,19 @@
 namespace yuragi::drivers::modbus {
 namespace {
 
-ModbusRead read_of(const ModbusProfile& profile, ModbusMeasure measure) {
+RegisterRead read_of(const Profile& profile, Measure measure) {
   return {.request = request_for(quantity_of(profile, measure)), .measures = {measure}, .stations = {}};
 }
 
-bool has_side_effect(const ModbusProfile& profile, const ModbusRead& read) {
-  return std::ranges::any_of(
-             read.measures,
-             [&](ModbusMeasure measure) { return quantity_of(profile, measure).read_has_side_effect; }) ||
+bool has_side_effect(const Profile& profile, const RegisterRead& read) {
+  return std::ranges::any_of(read.measures,
+                             [&](Measure measure) { return quantity_of(profile, measure).read_has_side_effect; }) ||
          std::ranges::any_of(read.stations,
                              [&](std::size_t i) { return profile.quantities[i].quantity.read_has_side_effect; });
 }
 
 /// One read instead of two, if possible.
-std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead& one, const ModbusRead& other) {
+std::optional<RegisterRead> merged(const Profile& profile, const RegisterRead& one, const RegisterRead& other) {
   if (one.request.unit != other.request.unit || one.request.function != other.request.function) return std::nullopt;
   if (has_side_effect(profile, one) || has_side_effect(profile, other)) return std::nullopt;
 
@@ -30,7 +29,7 @@ std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead&
   const int between = count - one.request.count - other.request.count;
   if (between > profile.block_gap || count > static_cast<int>(decode::modbus::kModbusMaxRegisters)) return std::nullopt;
 
-  ModbusRead read = one;
+  RegisterRead read = one;
   read.request.address = static_cast<std::uint16_t>(begin);
   read.request.count = static_cast<std::uint16_t>(count);
   read.measures.insert(read.measures.end(), other.measures.begin(), other.measures.end());
@@ -39,7 +38,7 @@ std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead&
 }
 
 /// Merges the first two reads that can be merged; false: none can.
-bool merge_two(const ModbusProfile& profile, std::vector<ModbusRead>& reads) {
+bool merge_two(const Profile& profile, std::vector<RegisterRead>& reads) {
   for (auto one = reads.begin(); one != reads.end(); ++one) {
     for (auto other = std::next(one); other != reads.end(); ++other) {
       const auto both = merged(profile, *one, *other);
@@ -54,25 +53,25 @@ bool merge_two(const ModbusProfile& profile, std::vector<ModbusRead>& reads) {
 
 }  // namespace
 
-bool ModbusRead::contains(ModbusMeasure measure) const {
+bool RegisterRead::contains(Measure measure) const {
   return std::ranges::find(measures, measure) != measures.end();
 }
 
-std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart) {
-  std::vector<ModbusRead> reads = {read_of(profile, ModbusMeasure::kSpeed)};
-  if (profile.direction && !is_direction_apart) reads.push_back(read_of(profile, ModbusMeasure::kDirection));
-  if (profile.gust) reads.push_back(read_of(profile, ModbusMeasure::kGust));
+std::vector<RegisterRead> plan_modbus_reads(const Profile& profile, bool is_direction_apart) {
+  std::vector<RegisterRead> reads = {read_of(profile, Measure::kSpeed)};
+  if (profile.direction && !is_direction_apart) reads.push_back(read_of(profile, Measure::kDirection));
+  if (profile.gust) reads.push_back(read_of(profile, Measure::kGust));
   for (std::size_t i = 0; i < profile.quantities.size(); ++i) {
     reads.push_back({.request = request_for(profile.quantities[i].quantity), .measures = {}, .stations = {i}});
   }
   while (profile.block_read && merge_two(profile, reads)) {
   }
-  if (profile.direction && is_direction_apart) reads.push_back(read_of(profile, ModbusMeasure::kDirection));
-  std::stable_partition(reads.begin(), reads.end(), [](const ModbusRead& read) { return read.has_wind(); });
+  if (profile.direction && is_direction_apart) reads.push_back(read_of(profile, Measure::kDirection));
+  std::stable_partition(reads.begin(), reads.end(), [](const RegisterRead& read) { return read.has_wind(); });
   return reads;
 }
 
-decode::modbus::ModbusRequest request_for(const decode::modbus::ModbusQuantity& quantity) {
+decode::modbus::Request request_for(const decode::modbus::Quantity& quantity) {
   return {.transaction = 0,
           .unit = quantity.slave,
           .function = quantity.function,
@@ -80,21 +79,21 @@ decode::modbus::ModbusRequest request_for(const decode::modbus::ModbusQuantity& 
           .count = static_cast<std::uint16_t>(decode::modbus::register_count(quantity.type))};
 }
 
-const decode::modbus::ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure) {
+const decode::modbus::Quantity& quantity_of(const Profile& profile, Measure measure) {
   switch (measure) {
-    case ModbusMeasure::kDirection:
+    case Measure::kDirection:
       return *profile.direction;
-    case ModbusMeasure::kGust:
+    case Measure::kGust:
       return *profile.gust;
-    case ModbusMeasure::kSpeed:
+    case Measure::kSpeed:
       break;
   }
   return profile.speed;
 }
 
-std::span<const std::uint16_t> registers_of(const decode::modbus::ModbusQuantity& quantity,
-                                            const decode::modbus::ModbusRequest& request,
-                                            const decode::modbus::ModbusRegisters& registers) {
+std::span<const std::uint16_t> registers_of(const decode::modbus::Quantity& quantity,
+                                            const decode::modbus::Request& request,
+                                            const decode::modbus::Registers& registers) {
   const auto from = static_cast<std::size_t>(quantity.address - request.address);
   return registers.span().subspan(from, decode::modbus::register_count(quantity.type));
 }

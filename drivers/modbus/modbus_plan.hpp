@@ -9,15 +9,15 @@
 
 namespace yuragi::drivers::modbus {
 
-enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
+enum class Measure : std::uint8_t { kSpeed, kDirection, kGust };
 
 /// One request, and the quantities in its reply.
-struct ModbusRead {
-  decode::modbus::ModbusRequest request;
-  std::vector<ModbusMeasure> measures;
-  std::vector<std::size_t> stations;  ///< which of ModbusProfile::quantities
+struct RegisterRead {
+  decode::modbus::Request request;
+  std::vector<Measure> measures;
+  std::vector<std::size_t> stations;  ///< which of Profile::quantities
 
-  bool contains(ModbusMeasure measure) const;
+  bool contains(Measure measure) const;
   /// Does it bring something of the wind, and not only other quantities?
   bool has_wind() const { return !measures.empty(); }
 };
@@ -26,17 +26,17 @@ struct ModbusRead {
 /// profile allows, so that adjoining registers of one slave are read together, and those whose reading has side effects
 /// alone.
 /// `is_direction_apart`: the direction is on a line of its own.
-std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart = false);
+std::vector<RegisterRead> plan_modbus_reads(const Profile& profile, bool is_direction_apart = false);
 
 /// The request that reads this quantity alone.
-decode::modbus::ModbusRequest request_for(const decode::modbus::ModbusQuantity& quantity);
+decode::modbus::Request request_for(const decode::modbus::Quantity& quantity);
 
 /// The quantity of `measure` in the profile, which must have it.
-const decode::modbus::ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);
+const decode::modbus::Quantity& quantity_of(const Profile& profile, Measure measure);
 
 /// The part of a reply to `request` that belongs to `quantity`.
-std::span<const std::uint16_t> registers_of(const decode::modbus::ModbusQuantity& quantity,
-                                            const decode::modbus::ModbusRequest& request,
-                                            const decode::modbus::ModbusRegisters& registers);
+std::span<const std::uint16_t> registers_of(const decode::modbus::Quantity& quantity,
+                                            const decode::modbus::Request& request,
+                                            const decode::modbus::Registers& registers);
 
 }  // namespace yuragi::drivers::modbus

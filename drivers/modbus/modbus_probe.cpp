@@ -13,14 +13,14 @@
 namespace yuragi::drivers::modbus {
 namespace {
 
-using Registers = Result<decode::modbus::ModbusRegisters, decode::modbus::ModbusRefusal>;
+using Registers = Result<decode::modbus::Registers, decode::modbus::RefusedReply>;
 
 /// How long a line must be quiet between two requests: shorter than in service, since most get no reply.
 constexpr Nanoseconds kProbeQuiet = std::chrono::milliseconds(20);
 
 /// Requests that nearly every device replies to: the first register of either kind.
-constexpr std::array kKnocks = {decode::modbus::ModbusRequest{.function = 3, .address = 0, .count = 1},
-                                decode::modbus::ModbusRequest{.function = 4, .address = 0, .count = 1}};
+constexpr std::array kKnocks = {decode::modbus::Request{.function = 3, .address = 0, .count = 1},
+                                decode::modbus::Request{.function = 4, .address = 0, .count = 1}};
 
 /// Below this a value counts as 0: a float that is read in a wrong order of words can be 1e-40.
 constexpr double kMinLive = 0.005;
@@ -28,16 +28,15 @@ constexpr double kMinLive = 0.005;
 /// The speeds, m/s, from which the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
 constexpr std::array kBeaufortFrom_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
 
-bool has_side_effects(const ModbusProfile& profile) {
+bool has_side_effects(const Profile& profile) {
   return profile.speed.read_has_side_effect || (profile.direction && profile.direction->read_has_side_effect) ||
          (profile.gust && profile.gust->read_has_side_effect) ||
-         std::ranges::any_of(profile.quantities, [](const ModbusStationQuantity& station) {
-           return station.quantity.read_has_side_effect;
-         });
+         std::ranges::any_of(profile.quantities,
+                             [](const StationQuantity& station) { return station.quantity.read_has_side_effect; });
 }
 
 /// Compares the device's own wind force with the speed. Devices round and average in different ways.
-void judge_by_force(const ModbusProfile& profile, const Registers& reply, ModbusFit& fit) {
+void judge_by_force(const Profile& profile, const Registers& reply, Fit& fit) {
   if (!reply || !fit.speed_m_s) return;
   const auto force = decode::modbus::decode_number(*profile.beaufort, reply->span());
   if (!force || *force < 0.0 || *force > static_cast<double>(kBeaufortFrom_m_s.size())) return;
@@ -50,24 +49,23 @@ void judge_by_force(const ModbusProfile& profile, const Registers& reply, Modbus
 }
 
 /// Do both read the same register as a speed, and something else in it?
-bool differ_in_scale(const ModbusProfile& one, const ModbusProfile& other) {
-  const auto place = [](const decode::modbus::ModbusQuantity& speed) {
+bool differ_in_scale(const Profile& one, const Profile& other) {
+  const auto place = [](const decode::modbus::Quantity& speed) {
     return std::tuple(speed.function, speed.address, speed.type, speed.order);
   };
-  const auto meaning = [](const decode::modbus::ModbusQuantity& speed) {
+  const auto meaning = [](const decode::modbus::Quantity& speed) {
     return std::tuple(speed.scale, speed.offset, speed.unit);
   };
   return place(one.speed) == place(other.speed) && meaning(one.speed) != meaning(other.speed);
 }
 
-bool has_one_slave(const ModbusProfile& profile) {
+bool has_one_slave(const Profile& profile) {
   return !profile.direction || profile.direction->slave == profile.speed.slave;
 }
 
 /// Stop bits make no difference here: a device that sends two is understood by one that expects one, and vice versa.
-bool is_home_of(const bus::ModbusLine& line, const ModbusProfile& profile) {
-  return line.framing == decode::modbus::ModbusFraming::kTcp ||
-         (line.baud == profile.baud && line.parity == profile.parity);
+bool is_home_of(const bus::ModbusLine& line, const Profile& profile) {
+  return line.framing == decode::modbus::Framing::kTcp || (line.baud == profile.baud && line.parity == profile.parity);
 }
 
 /// One open line. Replies are cached, so that nothing is requested twice.
@@ -82,7 +80,7 @@ class ProbedLine {
   Result<void, Failure> open() { return connection_->open(interruption_); }
 
   /// The registers, or what was wrong with the reply; kTimeout if there was none.
-  Registers cached_exchange(const decode::modbus::ModbusRequest& request) {
+  Registers cached_exchange(const decode::modbus::Request& request) {
     const auto key = std::tuple(request.unit, request.function, request.address, request.count);
     if (const auto known = replies_.find(key); known != replies_.end()) return known->second;
     const Registers reply = exchange(request);
@@ -91,8 +89,8 @@ class ProbedLine {
   }
 
  private:
-  Registers exchange(decode::modbus::ModbusRequest request) {
-    constexpr decode::modbus::ModbusRefusal kSilence{decode::Refusal::kTimeout};
+  Registers exchange(decode::modbus::Request request) {
+    constexpr decode::modbus::RefusedReply kSilence{decode::Refusal::kTimeout};
     std::array<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer{};
     request.transaction = ++transaction_;
     // A TCP peer that is not a Modbus server may close the connection.
@@ -103,9 +101,9 @@ class ProbedLine {
       return kSilence;
     }
     for (;;) {
-      const bus::BusMessage message = connection_->receive(buffer, interruption_);
-      if (message.status == bus::BusStatus::kLost) connection_->close();
-      if (message.status != bus::BusStatus::kMessage) return kSilence;
+      const bus::Message message = connection_->receive(buffer, interruption_);
+      if (message.status == bus::Status::kLost) connection_->close();
+      if (message.status != bus::Status::kMessage) return kSilence;
       const auto registers =
           decode::modbus::decode_modbus(line_.framing, request, std::span(buffer).first(message.size));
       if (registers || registers.error().why != decode::Refusal::kNotMine) return registers;
@@ -128,35 +126,34 @@ bool is_sign_of_life(const Registers& reply) {
 
 /// Enters the value of one reply into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
 /// of the speed.
-bool take(const ModbusProfile& profile, const ModbusRead& read, const decode::modbus::ModbusRegisters& registers,
-          ModbusFit& fit) {
-  for (const ModbusMeasure measure : read.measures) {
-    const decode::modbus::ModbusQuantity& quantity = quantity_of(profile, measure);
+bool take(const Profile& profile, const RegisterRead& read, const decode::modbus::Registers& registers, Fit& fit) {
+  for (const Measure measure : read.measures) {
+    const decode::modbus::Quantity& quantity = quantity_of(profile, measure);
     const auto part = registers_of(quantity, read.request, registers);
-    const auto value = measure == ModbusMeasure::kDirection ? decode::modbus::decode_direction_deg(quantity, part)
-                                                            : decode::modbus::decode_speed_m_s(quantity, part);
-    if (!value && (measure == ModbusMeasure::kSpeed || value.error() != decode::Refusal::kInvalid)) return false;
+    const auto value = measure == Measure::kDirection ? decode::modbus::decode_direction_deg(quantity, part)
+                                                      : decode::modbus::decode_speed_m_s(quantity, part);
+    if (!value && (measure == Measure::kSpeed || value.error() != decode::Refusal::kInvalid)) return false;
     if (!value) continue;
-    if (measure == ModbusMeasure::kSpeed) fit.speed_m_s = *value;
-    if (measure == ModbusMeasure::kDirection) fit.direction_deg = *value;
-    if (measure == ModbusMeasure::kGust) fit.gust_m_s = *value;
+    if (measure == Measure::kSpeed) fit.speed_m_s = *value;
+    if (measure == Measure::kDirection) fit.direction_deg = *value;
+    if (measure == Measure::kGust) fit.gust_m_s = *value;
   }
   return true;
 }
 
 /// The profile's values on that line, if all of its reads get replies with plausible values.
-std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& profile,
-                                const std::vector<ModbusRead>& reads, ProbedLine& line) {
-  ModbusFit fit{.profile = name,
-                .device = profile.name,
-                .speed_m_s = {},
-                .direction_deg = {},
-                .gust_m_s = {},
-                .beaufort = {},
-                .speed_slave = profile.speed.slave,
-                .direction_slave = {}};
+std::optional<Fit> fit_of(const std::string& name, const Profile& profile, const std::vector<RegisterRead>& reads,
+                          ProbedLine& line) {
+  Fit fit{.profile = name,
+          .device = profile.name,
+          .speed_m_s = {},
+          .direction_deg = {},
+          .gust_m_s = {},
+          .beaufort = {},
+          .speed_slave = profile.speed.slave,
+          .direction_slave = {}};
   if (profile.direction) fit.direction_slave = profile.direction->slave;
-  for (const ModbusRead& read : reads) {
+  for (const RegisterRead& read : reads) {
     if (!read.has_wind()) continue;
     const Registers registers = line.cached_exchange(read.request);
     if (!registers || !take(profile, read, *registers, fit)) return std::nullopt;
@@ -166,8 +163,8 @@ std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& pr
 }
 
 /// The reading of a pair's cup, if it had this id and its vane were elsewhere.
-std::optional<ModbusFit> cup_fit_of(const NamedModbusProfile& named, std::uint8_t id, ProbedLine& line) {
-  ModbusProfile profile = named.profile;
+std::optional<Fit> cup_fit_of(const NamedModbusProfile& named, std::uint8_t id, ProbedLine& line) {
+  Profile profile = named.profile;
   profile.direction.reset();
   set_slave(profile, id);
   auto fit = fit_of(named.name, profile, plan_modbus_reads(profile), line);
@@ -176,40 +173,40 @@ std::optional<ModbusFit> cup_fit_of(const NamedModbusProfile& named, std::uint8_
 }
 
 /// The reading of a pair's vane, if it had this id.
-std::optional<ModbusFit> vane_fit_of(const NamedModbusProfile& named, std::uint8_t id, ProbedLine& line) {
-  ModbusProfile profile = named.profile;
+std::optional<Fit> vane_fit_of(const NamedModbusProfile& named, std::uint8_t id, ProbedLine& line) {
+  Profile profile = named.profile;
   profile.direction->slave = id;
   auto reads = plan_modbus_reads(profile, true);
-  const auto is_direction = [](const ModbusRead& read) { return read.contains(ModbusMeasure::kDirection); };
-  std::erase_if(reads, [&](const ModbusRead& read) { return !is_direction(read); });
+  const auto is_direction = [](const RegisterRead& read) { return read.contains(Measure::kDirection); };
+  std::erase_if(reads, [&](const RegisterRead& read) { return !is_direction(read); });
   return fit_of(named.name, profile, reads, line);
 }
 
 /// Does a slave of this id reply? For devices that ignore requests for registers that they do not have, those of their
 /// own profile are read, with its line settings.
-bool replies_at_all(std::uint8_t id, const bus::ModbusLine& settings, const ModbusProbePlan& plan, ProbedLine& line) {
-  for (decode::modbus::ModbusRequest knock : kKnocks) {
+bool replies_at_all(std::uint8_t id, const bus::ModbusLine& settings, const ProbePlan& plan, ProbedLine& line) {
+  for (decode::modbus::Request knock : kKnocks) {
     knock.unit = id;
     if (is_sign_of_life(line.cached_exchange(knock))) return true;
   }
   return std::ranges::any_of(plan.profiles, [&](const NamedModbusProfile& named) {
     if (has_side_effects(named.profile) || !is_home_of(settings, named.profile)) return false;
     const auto reads = plan_modbus_reads(named.profile);
-    return std::ranges::any_of(reads, [&](const ModbusRead& read) {
+    return std::ranges::any_of(reads, [&](const RegisterRead& read) {
       return read.request.unit == id && is_sign_of_life(line.cached_exchange(read.request));
     });
   });
 }
 
-std::vector<ModbusFit> fits_of(std::uint8_t id, const bus::ModbusLine& settings, const ModbusProbePlan& plan,
-                               ProbedLine& line, const bus::Interruption& interruption) {
-  std::vector<ModbusFit> fits;
+std::vector<Fit> fits_of(std::uint8_t id, const bus::ModbusLine& settings, const ProbePlan& plan, ProbedLine& line,
+                         const bus::Interruption& interruption) {
+  std::vector<Fit> fits;
   for (const NamedModbusProfile& named : plan.profiles) {
     if (interruption.is_set() || has_side_effects(named.profile)) continue;
     // One of several slaves is searched for under the profile's ids.
     const bool is_pair = !has_one_slave(named.profile);
     if (is_pair && named.profile.speed.slave != id) continue;
-    ModbusProfile profile = named.profile;
+    Profile profile = named.profile;
     if (!is_pair) set_slave(profile, id);
     auto fit = fit_of(named.name, profile, plan_modbus_reads(profile), line);
     if (!fit) continue;
@@ -225,21 +222,21 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const bus::ModbusLine& settings,
     if (auto fit = vane_fit_of(named, id, line)) fits.push_back(*std::move(fit));
   }
 
-  std::ranges::stable_sort(fits, std::greater<>(), [](const ModbusFit& fit) {
+  std::ranges::stable_sort(fits, std::greater<>(), [](const Fit& fit) {
     return std::tuple(is_live(fit), fit.verdict != ForceVerdict::kContradicts, fit.direction_deg.has_value(),
                       fit.gust_m_s.has_value(), fit.is_at_home);
   });
   return fits;
 }
 
-/// ModbusHit::scale_doubts.
-std::vector<std::string> scale_doubts_of(const std::vector<ModbusFit>& fits, const ModbusProbePlan& plan) {
+/// Hit::scale_doubts.
+std::vector<std::string> scale_doubts_of(const std::vector<Fit>& fits, const ProbePlan& plan) {
   if (fits.empty() || !fits.front().speed_m_s || fits.front().verdict == ForceVerdict::kAgrees) return {};
-  const auto profile_of = [&plan](const ModbusFit& fit) -> const ModbusProfile& {
+  const auto profile_of = [&plan](const Fit& fit) -> const Profile& {
     return std::ranges::find(plan.profiles, fit.profile, &NamedModbusProfile::name)->profile;
   };
   std::vector<std::string> doubts = {fits.front().profile};
-  for (const ModbusFit& fit : std::span(fits).subspan(1)) {
+  for (const Fit& fit : std::span(fits).subspan(1)) {
     const bool is_possible = fit.speed_m_s && fit.verdict != ForceVerdict::kContradicts;
     if (is_possible && differ_in_scale(profile_of(fits.front()), profile_of(fit))) doubts.push_back(fit.profile);
   }
@@ -249,13 +246,13 @@ std::vector<std::string> scale_doubts_of(const std::vector<ModbusFit>& fits, con
 
 }  // namespace
 
-bool is_live(const ModbusFit& fit) {
+bool is_live(const Fit& fit) {
   return std::max({fit.speed_m_s.value_or(0.0), fit.direction_deg.value_or(0.0), fit.gust_m_s.value_or(0.0)}) >=
          kMinLive;
 }
 
-Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
-                                  const ModbusProbeFound& found, const bus::Interruption& interruption) {
+Result<int, Failure> probe_modbus(const ProbePlan& plan, const ProbeProgress& progress, const ProbeFound& found,
+                                  const bus::Interruption& interruption) {
   int hits = 0;
   const double all = static_cast<double>(plan.lines.size() * plan.ids.size());
   double done = 0.0;
@@ -303,7 +300,7 @@ std::vector<bus::ModbusLine> likely_modbus_lines(const std::string& device,
   std::vector<bus::ModbusLine> lines;
   for (const auto& [count, settings] : order) {
     bus::ModbusLine line;
-    line.framing = decode::modbus::ModbusFraming::kRtu;
+    line.framing = decode::modbus::Framing::kRtu;
     line.device = device;
     line.baud = settings.first;
     line.parity = settings.second;
@@ -320,11 +317,11 @@ std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& direc
   return profiles;
 }
 
-std::string sensor_table_for(const std::string& name, const bus::ModbusLine& line, const ModbusFit& fit,
-                             const ModbusProfile& profile, const std::string& device) {
+std::string sensor_table_for(const std::string& name, const bus::ModbusLine& line, const Fit& fit,
+                             const Profile& profile, const std::string& device) {
   std::string table =
       fmt::format("[[sensor]]\nname = \"{}\"\ndriver = \"modbus\"\nprofile = \"{}\"\n", name, fit.profile);
-  if (line.framing == decode::modbus::ModbusFraming::kTcp) {
+  if (line.framing == decode::modbus::Framing::kTcp) {
     table += fmt::format("transport = \"tcp\"\nhost = \"{}\"\nport = {}\n", line.host, line.port);
   } else {
     table += fmt::format("transport = \"rtu\"\ndevice = \"{}\"\n", device);

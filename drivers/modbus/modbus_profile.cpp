@@ -199,8 +199,8 @@ std::optional<double> optional_number(TableReader& reader, std::string_view key)
 }
 
 /// What a speed and a direction have in common. `address_base` is what the maker's numbering starts from.
-decode::modbus::ModbusQuantity read_quantity(TableReader& reader, std::int64_t address_base) {
-  decode::modbus::ModbusQuantity quantity;
+decode::modbus::Quantity read_quantity(TableReader& reader, std::int64_t address_base) {
+  decode::modbus::Quantity quantity;
   quantity.slave = static_cast<std::uint8_t>(reader.whole("slave", 1, 247));
   quantity.function = static_cast<std::uint8_t>(reader.whole("function", 3, 4, 3));
   quantity.type = static_cast<decode::modbus::RegisterType>(reader.choice("type", decode::modbus::kRegisterTypeNames));
@@ -225,8 +225,8 @@ decode::modbus::ModbusQuantity read_quantity(TableReader& reader, std::int64_t a
 }
 
 /// A speed, or a gust.
-decode::modbus::ModbusQuantity read_speed(TableReader reader, std::int64_t address_base) {
-  decode::modbus::ModbusQuantity speed = read_quantity(reader, address_base);
+decode::modbus::Quantity read_speed(TableReader reader, std::int64_t address_base) {
+  decode::modbus::Quantity speed = read_quantity(reader, address_base);
   // Every unit but the last is one of speed.
   speed.unit = static_cast<decode::modbus::QuantityUnit>(
       reader.choice("unit", std::span(decode::modbus::kQuantityUnitNames).first(4)));
@@ -254,8 +254,8 @@ std::optional<sensor::StatedValue> read_value(TableReader& speed) {
   return stated;
 }
 
-decode::modbus::ModbusQuantity read_direction(TableReader reader, std::int64_t address_base) {
-  decode::modbus::ModbusQuantity direction = read_quantity(reader, address_base);
+decode::modbus::Quantity read_direction(TableReader reader, std::int64_t address_base) {
+  decode::modbus::Quantity direction = read_quantity(reader, address_base);
   direction.unit = decode::modbus::QuantityUnit::kDegrees;
   reader.choice("unit", std::span(decode::modbus::kQuantityUnitNames).last(1), "deg");
   direction.map =
@@ -265,14 +265,14 @@ decode::modbus::ModbusQuantity read_direction(TableReader reader, std::int64_t a
 }
 
 /// Reads a number without a unit, or with the unit in its name.
-decode::modbus::ModbusQuantity read_number(TableReader reader, std::int64_t address_base) {
-  decode::modbus::ModbusQuantity quantity = read_quantity(reader, address_base);
+decode::modbus::Quantity read_number(TableReader reader, std::int64_t address_base) {
+  decode::modbus::Quantity quantity = read_quantity(reader, address_base);
   reader.finish();
   return quantity;
 }
 
 /// The tables [quantities.NAME].
-void read_station_quantities(TableReader reader, std::int64_t address_base, ModbusProfile& profile) {
+void read_station_quantities(TableReader reader, std::int64_t address_base, Profile& profile) {
   for (const wind::StationQuantity& what : wind::kStationQuantities) {
     const bool is_there = reader.has(what.name);
     TableReader table = reader.table(what.name, false);
@@ -281,7 +281,7 @@ void read_station_quantities(TableReader reader, std::int64_t address_base, Modb
   reader.finish();
 }
 
-void read_evidence(TableReader& reader, ModbusProfile& profile) {
+void read_evidence(TableReader& reader, Profile& profile) {
   for (const std::size_t index : reader.choice_list("confirmed_by", kProfileEvidenceNames)) {
     profile.confirmed_by.push_back(static_cast<ProfileEvidence>(index));
   }
@@ -292,7 +292,7 @@ void read_evidence(TableReader& reader, ModbusProfile& profile) {
   }
 }
 
-void read_serial(TableReader reader, ModbusProfile& profile) {
+void read_serial(TableReader reader, Profile& profile) {
   static constexpr std::string_view kParities[] = {"none", "even", "odd"};
   profile.baud = static_cast<int>(reader.whole_among("baud", kModbusBauds, profile.baud));
   profile.parity = "NEO"[reader.choice("parity", kParities, "none")];
@@ -300,7 +300,7 @@ void read_serial(TableReader reader, ModbusProfile& profile) {
   reader.finish();
 }
 
-void read_timing(TableReader reader, ModbusProfile& profile) {
+void read_timing(TableReader reader, Profile& profile) {
   profile.poll_interval = reader.duration("poll_interval_s", 0.01, 3600.0, profile.poll_interval);
   profile.min_gap = reader.duration("min_gap_s", 0.0, 10.0, profile.min_gap);
   profile.response_timeout = reader.duration("response_timeout_s", 0.01, 10.0, profile.response_timeout);
@@ -313,7 +313,7 @@ void read_timing(TableReader reader, ModbusProfile& profile) {
 
 }  // namespace
 
-ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file) {
+Profile parse_modbus_profile(std::string_view text, std::string_view file) {
   toml::table root;
   try {
     root = tables::parse_toml(text, file);
@@ -325,7 +325,7 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   }
 
   TableReader reader(root, "", file);
-  ModbusProfile profile;
+  Profile profile;
   profile.name = reader.text("name");
   profile.source = reader.text("source");
   read_evidence(reader, profile);
@@ -360,12 +360,12 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   return profile;
 }
 
-void set_slave(ModbusProfile& profile, std::uint8_t id) {
+void set_slave(Profile& profile, std::uint8_t id) {
   const std::uint8_t before = std::exchange(profile.speed.slave, id);
   if (profile.direction && profile.direction->slave == before) profile.direction->slave = id;
   if (profile.gust && profile.gust->slave == before) profile.gust->slave = id;
   if (profile.beaufort && profile.beaufort->slave == before) profile.beaufort->slave = id;
-  for (ModbusStationQuantity& station : profile.quantities) {
+  for (StationQuantity& station : profile.quantities) {
     if (station.quantity.slave == before) station.quantity.slave = id;
   }
 }

@@ -24,14 +24,14 @@ enum class ProfileEvidence : std::uint8_t { kRecording, kMaker, kDecoder, kSelle
 inline constexpr std::array<std::string_view, 4> kProfileEvidenceNames = {"recording", "maker", "decoder", "seller"};
 
 /// A quantity besides the wind, and where the device has it.
-struct ModbusStationQuantity {
+struct StationQuantity {
   wind::StationQuantity what{};  ///< one of wind::kStationQuantities
-  decode::modbus::ModbusQuantity quantity;
+  decode::modbus::Quantity quantity;
 };
 
 /// A device's register map and request timing: one TOML file in drivers/modbus/profiles.
 /// drivers/modbus/profiles/README.md lists the keys, drivers/SOURCES.md S1 the devices and their documents.
-struct ModbusProfile {
+struct Profile {
   std::string name;    ///< of the device, for people
   std::string source;  ///< the document with its register map
   std::vector<ProfileEvidence> confirmed_by;
@@ -55,27 +55,27 @@ struct ModbusProfile {
   int block_gap = 0;              ///< so many registers between two quantities may be read along with them
   double north_offset_deg = 0.0;  ///< added to the direction: the device's mark points there instead of to north
 
-  decode::modbus::ModbusQuantity speed;
+  decode::modbus::Quantity speed;
   std::optional<sensor::StatedValue> value;  ///< what the speed is; nullopt: unknown
-  std::optional<decode::modbus::ModbusQuantity> direction;
-  std::optional<decode::modbus::ModbusQuantity> gust;  ///< the device's own gust: its strongest recent speed
+  std::optional<decode::modbus::Quantity> direction;
+  std::optional<decode::modbus::Quantity> gust;  ///< the device's own gust: its strongest recent speed
   /// The wind force that the device itself makes of its speed, in Beaufort: not read in service, but probing judges the
   /// speed's scale by it.
-  std::optional<decode::modbus::ModbusQuantity> beaufort;
-  std::vector<ModbusStationQuantity> quantities;
+  std::optional<decode::modbus::Quantity> beaufort;
+  std::vector<StationQuantity> quantities;
 };
 
 /// Reads a profile's text. Throws std::runtime_error "file:line:column: key: what is wrong, what is allowed"; `file` is
 /// used in that text only. Keys that no profile has are refused.
-ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file);
+Profile parse_modbus_profile(std::string_view text, std::string_view file);
 
 /// Sets the id of the slave that measures the speed, and of all other quantities on the same slave.
-void set_slave(ModbusProfile& profile, std::uint8_t id);
+void set_slave(Profile& profile, std::uint8_t id);
 
 /// Finds and reads a profile: a path, if `name` contains '/' or ends in ".toml"; otherwise NAME.toml in `directory` (if
 /// not empty), $YURAGI_PROFILE_DIR, ../share/yuragi/profiles beside the executable, the source tree.
 /// Throws std::runtime_error as above, or, for a name that is nowhere, one that lists the names that are.
-ModbusProfile load_modbus_profile(const std::string& name, const std::string& directory);
+Profile load_modbus_profile(const std::string& name, const std::string& directory);
 
 /// The names of all profiles that can be found so, in alphabetical order.
 std::vector<std::string> modbus_profile_names(const std::string& directory);

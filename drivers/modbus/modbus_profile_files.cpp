@@ -50,7 +50,7 @@ std::string known_names(const std::vector<fs::path>& directories) {
   return list.empty() ? "none" : list;
 }
 
-ModbusProfile read_profile(const fs::path& path) {
+Profile read_profile(const fs::path& path) {
   std::error_code ignored;
   std::ifstream in;
   if (fs::is_regular_file(path, ignored)) in.open(path, std::ios::binary);  // a pipe would be waited for
@@ -69,7 +69,7 @@ std::vector<std::string> modbus_profile_names(const std::string& directory) {
   return {names.begin(), names.end()};
 }
 
-ModbusProfile load_modbus_profile(const std::string& name, const std::string& directory) {
+Profile load_modbus_profile(const std::string& name, const std::string& directory) {
   if (name.find('/') != std::string::npos || name.ends_with(".toml")) return read_profile(name);
 
   const std::vector<fs::path> directories = profile_directories(directory);

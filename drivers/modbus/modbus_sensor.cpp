@@ -15,36 +15,34 @@ constexpr Nanoseconds kMaxSlaveWait = std::chrono::seconds(10);
 constexpr Nanoseconds kMaxQuantitiesWait = std::chrono::minutes(10);
 
 /// Does a gateway report that a slave does not reply?
-bool is_silence_by_proxy(const ModbusTrouble& trouble) {
-  return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == decode::Refusal::kException &&
+bool is_silence_by_proxy(const Trouble& trouble) {
+  return trouble.kind == Trouble::Kind::kRefused && trouble.refusal.why == decode::Refusal::kException &&
          decode::modbus::is_gateway_silence(trouble.refusal.exception);
 }
 
 /// "without direction and gust", for the quantities of this read.
-std::string without(const ModbusProfile& profile, const ModbusRead& read) {
+std::string without(const Profile& profile, const RegisterRead& read) {
   if (!read.has_wind()) {
     std::vector<std::string_view> names;
     for (const std::size_t station : read.stations) names.push_back(profile.quantities[station].what.name);
     return fmt::format("without {}", fmt::join(names, " and "));
   }
-  const bool has_direction = read.contains(ModbusMeasure::kDirection);
-  const bool has_gust = read.contains(ModbusMeasure::kGust);
+  const bool has_direction = read.contains(Measure::kDirection);
+  const bool has_gust = read.contains(Measure::kGust);
   return fmt::format("without {}{}{}", has_direction ? "direction" : "", has_direction && has_gust ? " and " : "",
                      has_gust ? "gust" : "");
 }
 
 }  // namespace
 
-ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus,
-                           const std::shared_ptr<ModbusBus>& direction_bus, std::uint32_t seed)
+Sensor::Sensor(Profile profile, std::shared_ptr<Bus> bus, const std::shared_ptr<Bus>& direction_bus, std::uint32_t seed)
     : sensor::ReopeningSensor(seed),
       profile_(std::move(profile)),
       bus_(std::move(bus)),
       direction_bus_(direction_bus ? direction_bus : bus_) {
   const bool is_direction_apart = direction_bus_ != bus_;
-  for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
-    ModbusBus* const line =
-        is_direction_apart && what.contains(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
+  for (const RegisterRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
+    Bus* const line = is_direction_apart && what.contains(Measure::kDirection) ? direction_bus_.get() : bus_.get();
     const platform::Backoff backoff =
         what.has_wind() ? platform::Backoff(kFirstSlaveWait, kMaxSlaveWait, ++seed)
                         : platform::Backoff(profile_.quantities_interval,
@@ -57,13 +55,13 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
   direction_bus_->keep_gap(profile_.min_gap);
 }
 
-void ModbusSensor::interrupt() noexcept {
+void Sensor::interrupt() noexcept {
   interruption_.set();
   bus_->wake_waiters();
   direction_bus_->wake_waiters();
 }
 
-Result<MonoTime, Failure> ModbusSensor::open(const sensor::Clock& clock) {
+Result<MonoTime, Failure> Sensor::open(const sensor::Clock& clock) {
   const auto opened = bus_->open(interruption_, clock);
   if (!opened) return opened.error();
   opened_at_ = *opened;
@@ -71,7 +69,7 @@ Result<MonoTime, Failure> ModbusSensor::open(const sensor::Clock& clock) {
   return std::max(clock.now().mono, opened_at_ + profile_.delay_after_open);
 }
 
-Result<MonoTime, Failure> ModbusSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> Sensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   if (step_ > 0) {
     read_more(reads_[step_], clock, sink);
     return go_on(clock.now(), sink);
@@ -83,17 +81,17 @@ Result<MonoTime, Failure> ModbusSensor::work(const sensor::Clock& clock, sensor:
   return read_first(clock, sink);
 }
 
-Result<MonoTime, Failure> ModbusSensor::read_first(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> Sensor::read_first(const sensor::Clock& clock, sensor::Sink& sink) {
   Read& read = reads_.front();
   const MonoTime ready_at = bus_->ready_at(read.what.request.unit);
   round_start_ = clock.now().mono;
   if (ready_at > round_start_) return ready_at;
 
-  const ModbusBus::Reply reply = exchange(read, clock, sink);
+  const Bus::Reply reply = exchange(read, clock, sink);
   const Instant now = clock.now();
   if (!reply) {
-    if (reply.error().kind == ModbusTrouble::Kind::kInterrupted) return now.mono;
-    if (reply.error().kind == ModbusTrouble::Kind::kLost) return Failure{explain(read, reply.error())};
+    if (reply.error().kind == Trouble::Kind::kInterrupted) return now.mono;
+    if (reply.error().kind == Trouble::Kind::kLost) return Failure{explain(read, reply.error())};
     report_unusable(sink, explain(read, reply.error()));
     return now.mono + read.backoff.next();
   }
@@ -119,14 +117,14 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const sensor::Clock& clock, s
   return go_on(now, sink);
 }
 
-void ModbusSensor::read_more(Read& read, const sensor::Clock& clock, sensor::SensorSink& sink) {
+void Sensor::read_more(Read& read, const sensor::Clock& clock, sensor::Sink& sink) {
   // The vane's own line, if it has one, is opened here; without it there is no direction.
   if (const auto opened = read.bus->open(interruption_, clock); !opened) {
     read.trouble = without(profile_, read.what) + ": " + opened.error().message;
     read.not_before = clock.now().mono + read.backoff.next();
     return;
   }
-  const ModbusBus::Reply reply = exchange(read, clock, sink);
+  const Bus::Reply reply = exchange(read, clock, sink);
   if (reply) {
     read.backoff.reset();
     take(read, *reply, sink);
@@ -136,13 +134,13 @@ void ModbusSensor::read_more(Read& read, const sensor::Clock& clock, sensor::Sen
   read.not_before = clock.now().mono + read.backoff.next();
 }
 
-ModbusBus::Reply ModbusSensor::exchange(const Read& read, const sensor::Clock& clock, sensor::SensorSink& sink) {
+Bus::Reply Sensor::exchange(const Read& read, const sensor::Clock& clock, sensor::Sink& sink) {
   const bus::ModbusPatience patience{.response_timeout = profile_.response_timeout,
                                      .byte_timeout = profile_.byte_timeout};
   return read.bus->exchange(read.what.request, patience, interruption_, clock, sink);
 }
 
-MonoTime ModbusSensor::go_on(const Instant& now, sensor::SensorSink& sink) {
+MonoTime Sensor::go_on(const Instant& now, sensor::Sink& sink) {
   // The reads that are due and have not been made in this round. The wind does not wait for the rest.
   for (++step_; step_ <= reads_.size(); ++step_) {
     if (step_ == wind_reads_) publish_wind(sink);
@@ -155,7 +153,7 @@ MonoTime ModbusSensor::go_on(const Instant& now, sensor::SensorSink& sink) {
 }
 
 /// All of the wind that came in this round, together.
-void ModbusSensor::publish_wind(sensor::SensorSink& sink) {
+void Sensor::publish_wind(sensor::Sink& sink) {
   if (reading_.time.mono < opened_at_ + profile_.warm_up) {
     report_connected(sink, profile_.name + " at " + bus_->where() + " is warming up");
     takes_quantities_ = false;
@@ -169,7 +167,7 @@ void ModbusSensor::publish_wind(sensor::SensorSink& sink) {
   sink.reading(reading_);
 }
 
-MonoTime ModbusSensor::end_round(const Instant& now, sensor::SensorSink& sink) {
+MonoTime Sensor::end_round(const Instant& now, sensor::Sink& sink) {
   step_ = 0;
   if (takes_quantities_) {
     quantities_due_ = round_start_ + profile_.quantities_interval;
@@ -179,24 +177,24 @@ MonoTime ModbusSensor::end_round(const Instant& now, sensor::SensorSink& sink) {
   return next_round(now.mono);
 }
 
-MonoTime ModbusSensor::next_round(MonoTime now) const {
+MonoTime Sensor::next_round(MonoTime now) const {
   return std::max(round_start_ + profile_.poll_interval, now + profile_.min_gap);
 }
 
-void ModbusSensor::take(Read& read, const decode::modbus::ModbusRegisters& registers, sensor::SensorSink& sink) {
+void Sensor::take(Read& read, const decode::modbus::Registers& registers, sensor::Sink& sink) {
   read.trouble.clear();
-  const auto part = [&](const decode::modbus::ModbusQuantity& quantity) {
+  const auto part = [&](const decode::modbus::Quantity& quantity) {
     return registers_of(quantity, read.what.request, registers);
   };
-  if (read.what.contains(ModbusMeasure::kDirection)) take_direction(read, part(*profile_.direction), sink);
-  if (read.what.contains(ModbusMeasure::kGust)) take_gust(read, part(*profile_.gust), sink);
+  if (read.what.contains(Measure::kDirection)) take_direction(read, part(*profile_.direction), sink);
+  if (read.what.contains(Measure::kGust)) take_gust(read, part(*profile_.gust), sink);
   if (!takes_quantities_) return;
   for (const std::size_t station : read.what.stations) {
     take_station(profile_.quantities[station], part(profile_.quantities[station].quantity), sink);
   }
 }
 
-void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink) {
+void Sensor::take_direction(Read& read, std::span<const std::uint16_t> registers, sensor::Sink& sink) {
   const auto direction_deg = decode::modbus::decode_direction_deg(*profile_.direction, registers);
   if (!direction_deg) {
     sink.refused(direction_deg.error());
@@ -208,7 +206,7 @@ void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> reg
   reading_.direction_deg = turned_deg < 360.0 ? turned_deg : 0.0;
 }
 
-void ModbusSensor::take_gust(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink) {
+void Sensor::take_gust(Read& read, std::span<const std::uint16_t> registers, sensor::Sink& sink) {
   const auto gust_m_s = decode::modbus::decode_speed_m_s(*profile_.gust, registers);
   if (!gust_m_s) {
     sink.refused(gust_m_s.error());
@@ -219,8 +217,8 @@ void ModbusSensor::take_gust(Read& read, std::span<const std::uint16_t> register
   reading_.gust_m_s = *gust_m_s;
 }
 
-void ModbusSensor::take_station(const ModbusStationQuantity& station, std::span<const std::uint16_t> registers,
-                                sensor::SensorSink& sink) {
+void Sensor::take_station(const StationQuantity& station, std::span<const std::uint16_t> registers,
+                          sensor::Sink& sink) {
   const auto value = decode::modbus::decode_number(station.quantity, registers);
   if (value) {
     quantities_.*station.what.value = *value;
@@ -229,23 +227,23 @@ void ModbusSensor::take_station(const ModbusStationQuantity& station, std::span<
   }
 }
 
-std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble) const {
+std::string Sensor::explain(const Read& read, const Trouble& trouble) const {
   const std::string slave = fmt::format("slave {} at {}", read.what.request.unit, read.bus->where());
   switch (trouble.kind) {
-    case ModbusTrouble::Kind::kSilence:
+    case Trouble::Kind::kSilence:
       return fmt::format("{} does not reply within {:g} s: check its power, its wiring and its id", slave,
                          seconds(profile_.response_timeout));
-    case ModbusTrouble::Kind::kOthersOnly:
+    case Trouble::Kind::kOthersOnly:
       return slave +
              " does not reply, but other slaves do: check its id, and that there is no other master on its line";
-    case ModbusTrouble::Kind::kLost:
+    case Trouble::Kind::kLost:
       return "the connection to " + read.bus->where() + " was lost: reopening it";
-    case ModbusTrouble::Kind::kInterrupted:
+    case Trouble::Kind::kInterrupted:
       return "interrupted";
-    case ModbusTrouble::Kind::kRefused:
+    case Trouble::Kind::kRefused:
       break;
   }
-  const decode::modbus::ModbusRefusal& refusal = trouble.refusal;
+  const decode::modbus::RefusedReply& refusal = trouble.refusal;
   if (is_silence_by_proxy(trouble)) {
     return fmt::format(
         "the gateway reports that {} does not reply (exception {}, {}): check its power, its wiring and its "

@@ -37,7 +37,7 @@ using bus::MqttSubscription;
 constexpr std::array<std::string_view, 6> kMqttUnits = {"preset", "m/s", "km/h", "kn", "mph", "ft/s"};
 
 /// One place in a message where a quantity can stand.
-struct MqttPlace {
+struct Place {
   std::string pointer;             ///< a JSON pointer; empty: the payload is the number
   std::optional<double> factor{};  ///< of a speed to m/s, if the key has its unit; nullopt: unit_of() the message
 
@@ -46,17 +46,17 @@ struct MqttPlace {
 
 /// Where one quantity comes from: a topic of its own, or the speed's. Of several places the first that a message has
 /// counts.
-struct MqttSource {
+struct Source {
   std::string topic;  ///< empty: this quantity is not published
-  std::vector<MqttPlace> places;
+  std::vector<Place> places;
 };
 
-struct MqttSettings {
+struct Settings {
   bus::MqttSubscription subscription;
-  const MqttPreset* preset = nullptr;
-  MqttSource speed;
-  MqttSource direction;
-  MqttSource gust;
+  const Preset* preset = nullptr;
+  Source speed;
+  Source direction;
+  Source gust;
   StationIdentity station;         ///< which ones are read
   double metres_per_second = 1.0;  ///< if the message does not have it
   bool has_own_unit = false;       ///< it was set, and also holds if the message's unit is unknown
@@ -65,8 +65,8 @@ struct MqttSettings {
 };
 
 /// The settings as they are written: without the preset's.
-struct MqttKeys {
-  MqttSettings settings;
+struct Keys {
+  Settings settings;
   std::string speed_path;
   std::string direction_path;
   std::string gust_path;
@@ -77,16 +77,16 @@ struct MqttKeys {
 };
 
 auto of(auto... members) {
-  return member_of(&MqttKeys::settings, members...);
+  return member_of(&Keys::settings, members...);
 }
 
-const Fields<MqttKeys> kMqttFields = {
+const Fields<Keys> kMqttFields = {
     {{.name = "host", .default_value = std::string("127.0.0.1"), .help = "the broker's name or address"},
-     of(&MqttSettings::subscription, &MqttSubscription::host)},
+     of(&Settings::subscription, &MqttSubscription::host)},
     {{"port", "", std::int64_t{0}, 0, 65535, "the broker's port; 0: 1883, with TLS 8883"},
-     of(&MqttSettings::subscription, &MqttSubscription::port)},
+     of(&Settings::subscription, &MqttSubscription::port)},
     {{.name = "user", .default_value = std::string(""), .help = "the user name; empty: none"},
-     of(&MqttSettings::subscription, &MqttSubscription::user)},
+     of(&Settings::subscription, &MqttSubscription::user)},
     Parameter{.name = "password",
               .default_value = Secret(),
               .help = "the user's password; or one of password_file and password_env, which keep it out of this file"},
@@ -98,69 +98,69 @@ const Fields<MqttKeys> kMqttFields = {
               .default_value = std::string(""),
               .help = "the environment variable that holds the password"},
     {{.name = "tls", .default_value = false, .help = "use TLS, and verify the broker"},
-     of(&MqttSettings::subscription, &MqttSubscription::uses_tls)},
+     of(&Settings::subscription, &MqttSubscription::uses_tls)},
     {{.name = "ca_file",
       .default_value = std::string(""),
       .help = "the CA certificate (PEM) of the broker; empty: those of the system"},
-     of(&MqttSettings::subscription, &MqttSubscription::ca_file)},
+     of(&Settings::subscription, &MqttSubscription::ca_file)},
     {{.name = "preset",
       .default_value = std::string("number"),
       .help = "settings for a common publisher; topics, paths and unit that are set override them",
       .choices = kMqttPresetNames},
-     of(&MqttSettings::preset),
+     of(&Settings::preset),
      [](const std::string& name) { return &mqtt_preset_of(name); }},
     {{.name = "model",
       .default_value = std::string(""),
       .help = "with rtl_433: the model of the station to read, such as Acurite-5n1; empty: any. If the topic has "
               "several stations, the first one received is read, until it is silent"},
-     of(&MqttSettings::station, &StationIdentity::model)},
+     of(&Settings::station, &StationIdentity::model)},
     {{.name = "id",
       .default_value = std::string(""),
       .help = "with rtl_433: the id of the station to read; empty: any. Many stations change their id with their "
               "batteries"},
-     of(&MqttSettings::station, &StationIdentity::id)},
+     of(&Settings::station, &StationIdentity::id)},
     {{.name = "channel",
       .default_value = std::string(""),
       .help = "with rtl_433: the channel of the station to read, such as A or 1; empty: any"},
-     of(&MqttSettings::station, &StationIdentity::channel)},
+     of(&Settings::station, &StationIdentity::channel)},
     {{.name = "topic",
       .default_value = std::string(""),
       .help = "the topic of the speed, and of quantities without a topic of their own; + matches any level; at most "
               "100 readings a second are taken, of messages of at most 64 KiB"},
-     of(&MqttSettings::speed, &MqttSource::topic)},
+     of(&Settings::speed, &Source::topic)},
     {{.name = "speed_path",
       .default_value = std::string(""),
       .help = "JSON pointer to the speed, such as /TX23/Speed/Act; empty: the preset's"},
-     &MqttKeys::speed_path},
+     &Keys::speed_path},
     {{.name = "direction_topic", .default_value = std::string(""), .help = "the direction's own topic"},
-     of(&MqttSettings::direction, &MqttSource::topic)},
+     of(&Settings::direction, &Source::topic)},
     {{.name = "direction_path",
       .default_value = std::string(""),
       .help = "JSON pointer to the direction in degrees; empty: the preset's"},
-     &MqttKeys::direction_path},
+     &Keys::direction_path},
     {{.name = "gust_topic", .default_value = std::string(""), .help = "the gust's own topic"},
-     of(&MqttSettings::gust, &MqttSource::topic)},
+     of(&Settings::gust, &Source::topic)},
     {{.name = "gust_path", .default_value = std::string(""), .help = "JSON pointer to the gust; empty: the preset's"},
-     &MqttKeys::gust_path},
+     &Keys::gust_path},
     {{.name = "speed_unit",
       .default_value = std::string("preset"),
       .help = "the unit of speed and gust, if the message has none (Tasmota's SpeedUnit, rtl_433's keys); \"preset\": "
               "the preset's",
       .choices = kMqttUnits},
-     &MqttKeys::speed_unit},
+     &Keys::speed_unit},
     {{"hold", "s", 60.0, 0.1, 86400.0, "a direction or gust is used for this long with speeds that come without one"},
-     of(&MqttSettings::hold),
+     of(&Settings::hold),
      from_seconds},
     {{"silence", "s", 900.0, 0.1, 86400.0, "without a message for this long the publisher counts as stopped"},
-     of(&MqttSettings::silence),
+     of(&Settings::silence),
      from_seconds},
     {{.name = "on_change",
       .default_value = false,
       .help = "the publisher sends only changes (Home Assistant's statestream): without messages the wind counts as "
               "unchanged, for as long as `silence`, which must be longer than the longest calm"},
-     &MqttKeys::speaks_on_change},
+     &Keys::speaks_on_change},
     {{"keep_alive", "s", std::int64_t{15}, 5, 3600, "a broker that sends nothing for this long is pinged"},
-     of(&MqttSettings::subscription, &MqttSubscription::keep_alive),
+     of(&Settings::subscription, &MqttSubscription::keep_alive),
      [](std::int64_t time_s) { return std::chrono::seconds(time_s); }},
 };
 
@@ -178,23 +178,23 @@ std::string shown(const std::string& text) {
 }
 
 /// Does any of the sources read JSON?
-PayloadForm form_of(const MqttSettings& settings) {
-  for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
-    if (std::ranges::any_of(source->places, &MqttPlace::is_json)) return PayloadForm::kJson;
+PayloadForm form_of(const Settings& settings) {
+  for (const Source* const source : {&settings.speed, &settings.direction, &settings.gust}) {
+    if (std::ranges::any_of(source->places, &Place::is_json)) return PayloadForm::kJson;
   }
   return PayloadForm::kText;
 }
 
 /// Returns the first of the source's places that the message has; nullptr if it has none.
-const MqttPlace* place_in(const Payload& payload, const MqttSource& source) {
+const Place* place_in(const Payload& payload, const Source& source) {
   const auto place =
       std::ranges::find_if(source.places, [&](const auto& each) { return !payload.lacks(each.pointer); });
   return place == source.places.end() ? nullptr : &*place;
 }
 
-class MqttSensor final : public sensor::ReopeningSensor {
+class Sensor final : public sensor::ReopeningSensor {
  public:
-  explicit MqttSensor(MqttSettings settings)
+  explicit Sensor(Settings settings)
       : sensor::ReopeningSensor(sensor::seed_of(settings.subscription.host + settings.speed.topic)),
         settings_(std::move(settings)),
         where_(fmt::format("topic {} of MQTT broker {}:{}", settings_.speed.topic, settings_.subscription.host,
@@ -218,7 +218,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     return received_at_;
   }
 
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override {
     if (!has_received_)
       report_unusable(sink, "waits for wind on " + where_ + ": retained messages do not count" + note_);
     bus::MqttMessage message;
@@ -239,7 +239,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   void close() noexcept override { client_->disconnect(); }
 
  private:
-  void take(const bus::MqttMessage& message, Instant now, sensor::SensorSink& sink) {
+  void take(const bus::MqttMessage& message, Instant now, sensor::Sink& sink) {
     sink.raw(sensor::RawDirection::kReceived, message.payload);
     if (message.is_too_long) return sink.refused(decode::Refusal::kMalformed);
     if (message.is_retained) return sink.refused(decode::Refusal::kInvalid);
@@ -257,7 +257,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     const auto gust = said_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
     if (gust && !hold_gust(*gust)) return sink.refused(decode::Refusal::kImplausible);
     if (!bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) return;
-    const MqttPlace* const speed = place_in(payload, settings_.speed);
+    const Place* const speed = place_in(payload, settings_.speed);
     const bool names_it = speed != nullptr || settings_.preset->names_stations;
     const bool has_quantities = names_it && take_quantities(payload, now, sink);
     if (speed != nullptr)
@@ -291,10 +291,10 @@ class MqttSensor final : public sensor::ReopeningSensor {
 
   /// Returns a direction or gust of this message: without a value if that cannot be read, or is sent as unknown;
   /// nullopt if the message has no place for it.
-  std::optional<HeldValue> said_in(const MqttSource& source, const std::string& topic, const Payload& payload,
-                                   double unit, MonoTime now, sensor::SensorSink& sink) const {
+  std::optional<HeldValue> said_in(const Source& source, const std::string& topic, const Payload& payload, double unit,
+                                   MonoTime now, sensor::Sink& sink) const {
     if (!bus::mqtt_topic_matches(topic, source.topic)) return std::nullopt;
-    const MqttPlace* const place = place_in(payload, source);
+    const Place* const place = place_in(payload, source);
     if (place == nullptr) return std::nullopt;
     HeldValue said = {.value = std::nullopt, .since = now};
     const auto number = payload.number_at(place->pointer);
@@ -304,7 +304,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   }
 
   /// An impossible direction is none; the speed beside it counts.
-  void hold_direction(const HeldValue& said, sensor::SensorSink& sink) {
+  void hold_direction(const HeldValue& said, sensor::Sink& sink) {
     direction_ = said;
     if (said.value) direction_.value = decode::wrapped_direction_deg(*said.value);
     is_impossible_ = said.value && !direction_.value;
@@ -321,7 +321,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     return false;
   }
 
-  bool take_quantities(const Payload& payload, Instant now, sensor::SensorSink& sink) const {
+  bool take_quantities(const Payload& payload, Instant now, sensor::Sink& sink) const {
     if (settings_.preset->quantities == nullptr) return false;
     auto quantities = settings_.preset->quantities(payload);
     if (!quantities) return false;
@@ -331,7 +331,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   }
 
   void take_speed(const Result<std::optional<double>, decode::Refusal>& speed, double metres_per_second, Instant now,
-                  sensor::SensorSink& sink) {
+                  sensor::Sink& sink) {
     if (!speed) return sink.refused(speed.error());
     if (!*speed) return sink.refused(decode::Refusal::kNotMine);
     decode::DecodedWind wind;
@@ -358,7 +358,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     return now.mono - held.since <= settings_.hold ? held.value : std::nullopt;
   }
 
-  MqttSettings settings_;
+  Settings settings_;
   std::string where_;
   std::unique_ptr<bus::MqttClient> client_;
   PayloadForm form_;
@@ -373,13 +373,13 @@ class MqttSensor final : public sensor::ReopeningSensor {
 };
 
 /// Throws, naming the setting, for what can be neither subscribed to nor found.
-void check_source(std::string_view name, const MqttSource& source) {
+void check_source(std::string_view name, const Source& source) {
   if (!source.topic.empty() && !bus::is_mqtt_filter(source.topic)) {
     throw std::runtime_error(
         fmt::format("{}topic: \"{}\" is not a topic; # is allowed only at the end, and + only as a whole level", name,
                     source.topic));
   }
-  for (const MqttPlace& place : source.places) {
+  for (const Place& place : source.places) {
     if (decode::is_json_pointer(place.pointer)) continue;
     throw std::runtime_error(
         fmt::format("{}path: \"{}\" is not a JSON pointer, which begins with a slash, as in /TX23/Speed/Act",
@@ -389,8 +389,8 @@ void check_source(std::string_view name, const MqttSource& source) {
 
 /// Returns the places of a quantity: the one that is set, or the preset's. A known key of a speed gives its unit,
 /// unless `own_unit` was set with the path.
-std::vector<MqttPlace> places_of(const std::string& path, std::span<const PresetPlace> known, bool has_own_unit) {
-  std::vector<MqttPlace> places;
+std::vector<Place> places_of(const std::string& path, std::span<const PresetPlace> known, bool has_own_unit) {
+  std::vector<Place> places;
   for (const PresetPlace& place : known) {
     if (!path.empty() && path != place.pointer) continue;
     const auto said = path.empty() || !has_own_unit ? decode::speed_unit_of_word(place.unit) : std::nullopt;
@@ -401,11 +401,11 @@ std::vector<MqttPlace> places_of(const std::string& path, std::span<const Preset
   return places;
 }
 
-MqttSource speed_source_of(const MqttKeys& keys) {
-  const MqttPreset& preset = *keys.settings.preset;
+Source speed_source_of(const Keys& keys) {
+  const Preset& preset = *keys.settings.preset;
   const std::string& topic = keys.settings.speed.topic;
-  MqttSource speed = {.topic = topic.empty() ? std::string(preset.topic) : topic,
-                      .places = places_of(keys.speed_path, preset.speed, keys.has_own_unit())};
+  Source speed = {.topic = topic.empty() ? std::string(preset.topic) : topic,
+                  .places = places_of(keys.speed_path, preset.speed, keys.has_own_unit())};
   if (speed.topic.empty()) throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
   if (speed.places.empty()) speed.places.emplace_back();
   return speed;
@@ -417,15 +417,15 @@ std::uint16_t broker_port_of(const MqttSubscription& subscription) {
 }
 
 std::vector<sensor::Endpoint> mqtt_endpoints(const ParameterValues& values) {
-  const MqttKeys keys = kMqttFields.of(values);
+  const Keys keys = kMqttFields.of(values);
   const MqttSubscription& broker = keys.settings.subscription;
   return {{.kind = sensor::EndpointKind::kBroker, .name = to_string(Address{broker.host, broker_port_of(broker)})}};
 }
 
-MqttSettings mqtt_settings_of(const ParameterValues& values) {
-  const MqttKeys keys = kMqttFields.of(values);
-  MqttSettings settings = keys.settings;
-  const MqttPreset& preset = *settings.preset;
+Settings mqtt_settings_of(const ParameterValues& values) {
+  const Keys keys = kMqttFields.of(values);
+  Settings settings = keys.settings;
+  const Preset& preset = *settings.preset;
   settings.has_own_unit = keys.has_own_unit();
   settings.metres_per_second =
       sensor::metres_per_second_in(settings.has_own_unit ? std::string_view(keys.speed_unit) : preset.unit);
@@ -433,7 +433,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   settings.speed = speed_source_of(keys);
 
   // Without a topic of its own a quantity comes with the speed, if its place in the message is known.
-  const auto complete = [&](MqttSource& source, const std::string& path, std::span<const PresetPlace> known) {
+  const auto complete = [&](Source& source, const std::string& path, std::span<const PresetPlace> known) {
     source.places = places_of(path, known, settings.has_own_unit);
     if (source.topic.empty() && !source.places.empty()) source.topic = settings.speed.topic;
     if (source.places.empty()) source.places.emplace_back();
@@ -446,7 +446,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   MqttSubscription& subscription = settings.subscription;
   subscription.port = broker_port_of(subscription);
   subscription.password = sensor::secret_of(values, "password");
-  for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
+  for (const Source* const source : {&settings.speed, &settings.direction, &settings.gust}) {
     const bool is_new = std::ranges::count(subscription.topics, source->topic) == 0;
     if (!source->topic.empty() && is_new) subscription.topics.push_back(source->topic);
   }
@@ -454,12 +454,12 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
 }
 
 std::unique_ptr<sensor::Sensor> open_mqtt(const ParameterValues& values) {
-  MqttSettings settings = mqtt_settings_of(values);
+  Settings settings = mqtt_settings_of(values);
   check_source("", settings.speed);
   check_source("direction_", settings.direction);
   check_source("gust_", settings.gust);
   if (settings.subscription.host.empty()) throw std::runtime_error("host: is empty; give the broker's name or address");
-  return std::make_unique<MqttSensor>(std::move(settings));
+  return std::make_unique<Sensor>(std::move(settings));
 }
 
 /// Returns true if every topic of the filter `narrow` is one of `wide`, another filter.
@@ -471,12 +471,12 @@ bool topic_covers(const std::string& wide, const std::string& narrow) {
 }
 
 sensor::ValueSelection mqtt_selection(const ParameterValues& values) {
-  const MqttKeys keys = kMqttFields.of(values);
-  const MqttSource speed = speed_source_of(keys);
+  const Keys keys = kMqttFields.of(values);
+  const Source speed = speed_source_of(keys);
   const StationIdentity& station = keys.settings.station;
-  const auto pointer_of = [](const MqttPlace& place) { return place.is_json() ? place.pointer : "the whole message"; };
+  const auto pointer_of = [](const Place& place) { return place.is_json() ? place.pointer : "the whole message"; };
   std::string pointers;
-  for (const MqttPlace& place : speed.places) pointers += (pointers.empty() ? "" : ",") + pointer_of(place);
+  for (const Place& place : speed.places) pointers += (pointers.empty() ? "" : ",") + pointer_of(place);
   return {.device = "MQTT broker " + bus::device_of({.kind = bus::BytePortKind::kTcpClient,
                                                      .host = keys.settings.subscription.host,
                                                      .port = broker_port_of(keys.settings.subscription)}),
@@ -489,7 +489,7 @@ sensor::ValueSelection mqtt_selection(const ParameterValues& values) {
 }
 
 double mqtt_unchanged_for_s(const ParameterValues& values) {
-  const MqttKeys keys = kMqttFields.of(values);
+  const Keys keys = kMqttFields.of(values);
   return keys.speaks_on_change ? seconds(keys.settings.silence) : 0.0;
 }
 

@@ -38,7 +38,7 @@ constexpr std::array<PresetPlace, 3> kRtl433Gust = {
 constexpr std::array<PresetPlace, 1> kWindnerdSpeed = {{{"/wind_instant_speed", ""}}};
 constexpr std::array<PresetPlace, 1> kWindnerdDirection = {{{"/wind_instant_dir", ""}}};
 
-const std::array<MqttPreset, 4> kMqttPresets = {
+const std::array<Preset, 4> kMqttPresets = {
     {{.name = "number", .topic = "", .unit = "m/s"},
      {.name = "tasmota",
       .topic = "tele/+/SENSOR",
@@ -60,8 +60,8 @@ const std::array<MqttPreset, 4> kMqttPresets = {
 
 }  // namespace
 
-const MqttPreset& mqtt_preset_of(std::string_view name) noexcept {
-  return *std::ranges::find(kMqttPresets, name, &MqttPreset::name);
+const Preset& mqtt_preset_of(std::string_view name) noexcept {
+  return *std::ranges::find(kMqttPresets, name, &Preset::name);
 }
 
 std::string_view speed_unit_of_word(std::string_view word) noexcept {

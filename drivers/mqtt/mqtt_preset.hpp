@@ -13,12 +13,12 @@ namespace yuragi::drivers::mqtt {
 /// One place in the messages of a publisher where a quantity can stand.
 struct PresetPlace {
   std::string_view pointer;  ///< a JSON pointer
-  std::string_view unit;     ///< of a speed, by its key; empty: as in MqttPreset::unit
+  std::string_view unit;     ///< of a speed, by its key; empty: as in Preset::unit
 };
 
 /// What is known of a publisher: where its messages have the wind, and in which unit. Of several places for one
 /// quantity the first that a message has counts.
-struct MqttPreset {
+struct Preset {
   std::string_view name;
   std::string_view topic;  ///< empty: it is up to the user
   std::span<const PresetPlace> speed = {};
@@ -34,7 +34,7 @@ struct MqttPreset {
 inline constexpr std::array<std::string_view, 4> kMqttPresetNames = {"number", "tasmota", "rtl_433", "windnerd"};
 
 /// The preset of one of kMqttPresetNames.
-const MqttPreset& mqtt_preset_of(std::string_view name) noexcept;
+const Preset& mqtt_preset_of(std::string_view name) noexcept;
 
 /// The one of sensor::kSpeedUnitNames that publishers write so: mi/h for mph, kt for kn, and the like; empty for any
 /// other word. Thread-safe and realtime-safe: yes.

@@ -63,7 +63,7 @@ class EcowittSensor final : public sensor::ReopeningSensor {
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override { return clock.now().mono; }
 
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override {
     const MonoTime next = clock.now().mono + settings_.poll_interval;
     if (const auto opened = port_->open(); !opened) return opened.error();
     if (!port_->write(decode::network::kEcowittRequest)) return Failure{where_ + " has closed the connection"};
@@ -106,7 +106,7 @@ class EcowittSensor final : public sensor::ReopeningSensor {
     }
   }
 
-  void take(const decode::network::EcowittValues& values, const Instant& now, sensor::SensorSink& sink) {
+  void take(const decode::network::EcowittValues& values, const Instant& now, sensor::Sink& sink) {
     const bool is_repeated = values.wind && last_wind_ == *values.wind && now.mono - published_at_ < sensor_interval();
     if (is_repeated) return;
     wind::StationQuantities said = values.quantities;
@@ -127,7 +127,7 @@ class EcowittSensor final : public sensor::ReopeningSensor {
   /// A little less than the configured one, so that a request that comes somewhat early does not count as too early.
   Nanoseconds sensor_interval() const { return settings_.sensor_interval - settings_.poll_interval / 2; }
 
-  void refuse(decode::Refusal why, sensor::SensorSink& sink) {
+  void refuse(decode::Refusal why, sensor::Sink& sink) {
     sink.refused(why);
     report_unusable(sink, trouble_of(why));
   }

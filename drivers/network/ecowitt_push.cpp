@@ -139,7 +139,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     return now;
   }
 
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override {
     Visits visits(*this, clock, sink);
     if (const auto served = server_.serve(kPushWait, visits); !served) return served.error();
     const MonoTime now = clock.now().mono;
@@ -157,7 +157,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   /// What comes during one work().
   class Visits final : public HttpService {
    public:
-    Visits(EcowittPushSensor& sensor, const sensor::Clock& clock, sensor::SensorSink& sink)
+    Visits(EcowittPushSensor& sensor, const sensor::Clock& clock, sensor::Sink& sink)
         : sensor_(sensor), clock_(clock), sink_(sink) {}
 
     bool admits(const boost::asio::ip::address& sender) override {
@@ -198,11 +198,11 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
 
     EcowittPushSensor& sensor_;
     const sensor::Clock& clock_;
-    sensor::SensorSink& sink_;
+    sensor::Sink& sink_;
   };
 
   /// Returns nullopt if it is accepted.
-  std::optional<PushRefusal> take(const HttpRequest& request, const Instant& now, sensor::SensorSink& sink) {
+  std::optional<PushRefusal> take(const HttpRequest& request, const Instant& now, sensor::Sink& sink) {
     using decode::Refusal;
     if (!limit_.admits(now.mono)) return PushRefusal{Refusal::kTooFrequent, {429, "too many pushes"}};
     const bool is_post = request.method == "POST";
@@ -263,7 +263,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   }
 
   void publish(const decode::network::StationPush& push, const std::string& station, const Instant& now,
-               sensor::SensorSink& sink) {
+               sensor::Sink& sink) {
     silence_.end(std::string(push.identity), now.mono);
     is_silent_ = false;
     trouble_.clear();

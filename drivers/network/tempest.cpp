@@ -89,7 +89,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
     return now;
   }
 
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override {
     const bus::ByteArrival arrival = port_->read(buffer_, kTempestWait);
     if (arrival.overrun > 0) sink.refused(decode::Refusal::kOverrun, arrival.overrun);
     const Instant now = clock.now();
@@ -110,7 +110,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
   void close() noexcept override { port_->close(); }
 
  private:
-  void take_datagram(std::span<const std::uint8_t> datagram, const Instant& now, sensor::SensorSink& sink) {
+  void take_datagram(std::span<const std::uint8_t> datagram, const Instant& now, sensor::Sink& sink) {
     sink.raw(sensor::RawDirection::kReceived, datagram);
     const auto message =
         decode::network::decode_tempest({reinterpret_cast<const char*>(datagram.data()), datagram.size()});
@@ -132,7 +132,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
     if (winds_.is_wind(*message)) publish(*message, now, sink);
   }
 
-  void publish(const TempestMessage& message, const Instant& now, sensor::SensorSink& sink) {
+  void publish(const TempestMessage& message, const Instant& now, sensor::Sink& sink) {
     if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
     silence_.end(message.serial_number, now.mono);
     is_silent_ = false;

@@ -33,7 +33,7 @@ constexpr Nanoseconds kOscWait = std::chrono::milliseconds(250);
 /// The time tag of a message may be so far ahead of our clock.
 constexpr Nanoseconds kFarthestAhead = std::chrono::seconds(1);
 
-struct OscSettings {
+struct Settings {
   bus::BytePortAddress port{.kind = bus::BytePortKind::kUdp};
   std::string address;
   std::int64_t speed_argument = 0;
@@ -45,10 +45,10 @@ struct OscSettings {
 };
 
 auto of(auto member) {
-  return member_of(&OscSettings::port, member);
+  return member_of(&Settings::port, member);
 }
 
-const Fields<OscSettings> kOscFields = {
+const Fields<Settings> kOscFields = {
     {{"port", "", std::int64_t{9000}, 1, 65535, "the UDP port that messages are received on"},
      of(&bus::BytePortAddress::port)},
     {{.name = "host",
@@ -64,28 +64,27 @@ const Fields<OscSettings> kOscFields = {
     {{.name = "address",
       .default_value = std::string("/wind"),
       .help = "the messages' OSC address, or a pattern: /station/*/wind; at most 100 readings a second are accepted"},
-     &OscSettings::address},
+     &Settings::address},
     {{"speed_argument", "", std::int64_t{0}, 0, 63, "which argument is the speed; the first is 0"},
-     &OscSettings::speed_argument},
+     &Settings::speed_argument},
     {{"direction_argument", "", std::int64_t{1}, -1, 63,
       "which argument is the direction that the wind comes from, in degrees; -1: none"},
-     &OscSettings::direction_argument},
-    {{"gust_argument", "", std::int64_t{-1}, -1, 63, "which argument is the gust; -1: none"},
-     &OscSettings::gust_argument},
+     &Settings::direction_argument},
+    {{"gust_argument", "", std::int64_t{-1}, -1, 63, "which argument is the gust; -1: none"}, &Settings::gust_argument},
     {{.name = "speed_unit",
       .default_value = std::string("m/s"),
       .help = "the unit of speed and gust",
       .choices = sensor::kSpeedUnitNames},
-     &OscSettings::metres_per_second,
+     &Settings::metres_per_second,
      sensor::metres_per_second_in},
     {{"silence", "s", 5.0, 0.1, 86400.0, "without a message for this long the sender counts as stopped"},
-     &OscSettings::silence,
+     &Settings::silence,
      from_seconds},
     {{.name = "on_change",
       .default_value = false,
       .help = "the sender sends only changes: without messages the wind counts as unchanged, for as long as `silence`, "
               "which must be longer than the longest calm"},
-     &OscSettings::speaks_on_change},
+     &Settings::speaks_on_change},
 };
 
 std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t which) {
@@ -94,7 +93,7 @@ std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t w
 }
 
 /// The wind in one message: kTooShort (it ends before the speed), kInvalid (the speed is no number), kImplausible.
-Result<decode::DecodedWind, decode::Refusal> wind_of(const bus::OscMessage& message, const OscSettings& settings) {
+Result<decode::DecodedWind, decode::Refusal> wind_of(const bus::OscMessage& message, const Settings& settings) {
   if (settings.speed_argument >= std::ssize(message.numbers)) return decode::Refusal::kTooShort;
   decode::DecodedWind wind;
   wind.speed_m_s = argument_of(message, settings.speed_argument);
@@ -109,9 +108,9 @@ Result<decode::DecodedWind, decode::Refusal> wind_of(const bus::OscMessage& mess
   return decode::checked(wind);
 }
 
-class OscSensor final : public sensor::ReopeningSensor {
+class Sensor final : public sensor::ReopeningSensor {
  public:
-  explicit OscSensor(OscSettings settings)
+  explicit Sensor(Settings settings)
       : sensor::ReopeningSensor(sensor::seed_of("osc" + std::to_string(settings.port.port))),
         settings_(std::move(settings)),
         where_(describe(settings_.port)),
@@ -129,7 +128,7 @@ class OscSensor final : public sensor::ReopeningSensor {
     return received_at_;
   }
 
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override {
     if (!has_received_)
       report_unusable(
           sink, fmt::format("waits for OSC messages {} at {}{}", settings_.address, where_, strangers_ + future_));
@@ -155,13 +154,13 @@ class OscSensor final : public sensor::ReopeningSensor {
 
  private:
   /// The first one is named, so that neither a flood nor forged addresses change the status without end.
-  void refuse_sender(const std::string& sender, sensor::SensorSink& sink) {
+  void refuse_sender(const std::string& sender, sensor::Sink& sink) {
     sink.refused(decode::Refusal::kNotMine);
     if (strangers_.empty()) strangers_ = "; refuses " + sender + ", which is not in `from`";
   }
 
   /// The status names the first one only, as above.
-  void refuse_future(const bus::OscMessage& message, Instant now, sensor::SensorSink& sink) {
+  void refuse_future(const bus::OscMessage& message, Instant now, sensor::Sink& sink) {
     sink.refused(decode::Refusal::kInvalid);
     if (future_.empty()) {
       future_ = fmt::format("; refuses messages with a time {:.0f} s in the future: set the clocks of both machines",
@@ -169,14 +168,14 @@ class OscSensor final : public sensor::ReopeningSensor {
     }
   }
 
-  void take_datagram(std::span<const std::uint8_t> datagram, Instant now, sensor::SensorSink& sink) {
+  void take_datagram(std::span<const std::uint8_t> datagram, Instant now, sensor::Sink& sink) {
     sink.raw(sensor::RawDirection::kReceived, datagram);
     const auto messages = bus::decode_osc(datagram);
     if (!messages) return sink.refused(messages.error());
     for (const bus::OscMessage& message : *messages) take(message, now, sink);
   }
 
-  void take(const bus::OscMessage& message, Instant now, sensor::SensorSink& sink) {
+  void take(const bus::OscMessage& message, Instant now, sensor::Sink& sink) {
     if (!bus::osc_address_matches(message.address, settings_.address)) return sink.refused(decode::Refusal::kNotMine);
     if (message.meant_for && *message.meant_for - now.utc > kFarthestAhead) return refuse_future(message, now, sink);
     const auto wind = wind_of(message, settings_);
@@ -192,7 +191,7 @@ class OscSensor final : public sensor::ReopeningSensor {
                   .quality = wind::ReadingQuality::kGood});
   }
 
-  OscSettings settings_;
+  Settings settings_;
   std::string where_;
   std::unique_ptr<bus::BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kMaxDatagram);
@@ -218,10 +217,10 @@ void check_senders(const std::string& host, const std::string& from) {
 }
 
 std::unique_ptr<sensor::Sensor> open_osc(const ParameterValues& values) {
-  OscSettings settings = kOscFields.of(values);
+  Settings settings = kOscFields.of(values);
   check_senders(settings.port.host, settings.port.senders);
   if (!settings.address.starts_with('/')) throw std::runtime_error("address: must begin with a slash, as in /wind");
-  return std::make_unique<OscSensor>(std::move(settings));
+  return std::make_unique<Sensor>(std::move(settings));
 }
 
 bool osc_address_covers(const std::string& wide, const std::string& narrow) {
@@ -229,7 +228,7 @@ bool osc_address_covers(const std::string& wide, const std::string& narrow) {
 }
 
 sensor::ValueSelection osc_selection(const ParameterValues& values) {
-  const OscSettings settings = kOscFields.of(values);
+  const Settings settings = kOscFields.of(values);
   return sensor::selection_at(settings.port,
                               {{.key = "address", .value = settings.address, .covers = osc_address_covers},
                                {.key = "from", .value = settings.port.senders, .covers = bus::senders_cover},
@@ -237,12 +236,12 @@ sensor::ValueSelection osc_selection(const ParameterValues& values) {
 }
 
 double osc_unchanged_for_s(const ParameterValues& values) {
-  const OscSettings settings = kOscFields.of(values);
+  const Settings settings = kOscFields.of(values);
   return settings.speaks_on_change ? seconds(settings.silence) : 0.0;
 }
 
 Result<sensor::SimulatedDevice, Failure> osc_simulated(const ParameterValues& values) {
-  const OscSettings settings = kOscFields.of(values);
+  const Settings settings = kOscFields.of(values);
   if (settings.address.find_first_of("?*[]{}") != std::string::npos)
     return Failure{"yuragi-sim sends to one OSC address, but address is a pattern"};
   if (settings.metres_per_second != 1.0) return Failure{"yuragi-sim sends speeds only in m/s: set speed_unit to m/s"};

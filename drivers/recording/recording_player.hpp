@@ -16,7 +16,7 @@ struct PlayerOrder {
   enum class Kind : std::uint8_t { kPause, kResume, kStep, kSeek, kRate };
   Kind kind = Kind::kPause;
   std::uint64_t count = 1;  ///< kStep: this many readings
-  std::string place = {};   ///< kSeek: as WindlogPlayer::seek() takes it
+  std::string place = {};   ///< kSeek: as windlog::Player::seek() takes it
   double rate = 1.0;        ///< kRate: above 0
 };
 
@@ -31,9 +31,9 @@ struct PlayerReport {
 
 /// The controls of a sensor that plays a recording: such a Sensor is one of these, too. Thread-safe: yes; orders are
 /// carried out on the sensor's thread, by its next poll().
-class RecordingPlayer {
+class Player {
  public:
-  virtual ~RecordingPlayer() = default;
+  virtual ~Player() = default;
 
   /// Before the first poll(): begins this many seconds of the clock early, so that the scenes have settled in its wind
   /// by its proper beginning (PlayerOptions::lead_s). Not if it begins paused.
@@ -46,7 +46,7 @@ class RecordingPlayer {
   virtual PlayerReport report() const = 0;
 };
 
-/// A sensor that plays a recording, and is a RecordingPlayer, too. The file is opened by its first poll().
+/// A sensor that plays a recording, and is a Player, too. The file is opened by its first poll().
 std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windlog::PlayerOptions options);
 
 }  // namespace yuragi::drivers::recording

@@ -76,14 +76,14 @@ const Fields<ReplayKeys> kWindlogFields = {
      of_playback(&PlaybackOptions::sensor)},
 };
 
-class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
+class WindlogReplay final : public sensor::Sensor, public Player {
  public:
   WindlogReplay(std::filesystem::path file, windlog::PlayerOptions options)
       : file_(std::move(file)), options_(std::move(options)) {
     report_.file = file_.string();
   }
 
-  MonoTime poll(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  MonoTime poll(const sensor::Clock& clock, sensor::Sink& sink) override {
     const Instant now = clock.now();
     auto next = play(now, sink);
     std::string failure;
@@ -126,14 +126,14 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
   /// Plays what is due; returns when the next reading is due.
-  Result<MonoTime, Failure> play(const Instant& now, sensor::SensorSink& sink) {
+  Result<MonoTime, Failure> play(const Instant& now, sensor::Sink& sink) {
     if (!player_) {
-      auto opened = windlog::WindlogPlayer::open(file_, options_, now, stop_.get_token());
+      auto opened = windlog::Player::open(file_, options_, now, stop_.get_token());
       if (!opened) return opened.error();
       player_.emplace(std::move(*opened));
     }
     carry_out_orders(now);
-    return player_->play(now, [&sink](const wind::WindReading& reading) { sink.reading(reading); });
+    return player_->play(now, [&sink](const wind::Reading& reading) { sink.reading(reading); });
   }
 
   void carry_out_orders(const Instant& now) {
@@ -170,7 +170,7 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
   }
 
   /// Reports the link state when it has changed.
-  void report(sensor::SensorSink& sink) {
+  void report(sensor::Sink& sink) {
     const Doing doing = player_->is_finished() ? Doing::kFinished
                         : player_->is_paused() ? Doing::kPaused
                                                : Doing::kPlaying;
@@ -198,7 +198,7 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
   std::stop_source stop_;
 
   // Of the sensor's thread.
-  std::optional<windlog::WindlogPlayer> player_;
+  std::optional<windlog::Player> player_;
   Nanoseconds back_off_{0};
   std::optional<Doing> reported_;
 

@@ -14,7 +14,7 @@ constexpr Nanoseconds kMaxWait = std::chrono::seconds(10);
 
 ReopeningSensor::ReopeningSensor(std::uint32_t seed) : backoff_(kFirstWait, kMaxWait, seed) {}
 
-MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
+MonoTime ReopeningSensor::poll(const Clock& clock, Sink& sink) {
   if (clock.now().mono < next_poll_) {
     if (is_open_ || !poll_for_return()) return next_poll_;
     backoff_.reset();
@@ -36,20 +36,20 @@ MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   return next_poll_;
 }
 
-void ReopeningSensor::report_connected(SensorSink& sink, const std::string& detail) {
+void ReopeningSensor::report_connected(Sink& sink, const std::string& detail) {
   backoff_.reset();
   report(sink, wind::LinkState::kConnected, detail);
 }
 
-void ReopeningSensor::report_unusable(SensorSink& sink, const std::string& detail) {
+void ReopeningSensor::report_unusable(Sink& sink, const std::string& detail) {
   report(sink, wind::LinkState::kConnecting, detail);
 }
 
-void ReopeningSensor::report_finished(SensorSink& sink, const std::string& detail) {
+void ReopeningSensor::report_finished(Sink& sink, const std::string& detail) {
   report(sink, wind::LinkState::kFinished, detail);
 }
 
-void ReopeningSensor::report(SensorSink& sink, wind::LinkState state, const std::string& detail) {
+void ReopeningSensor::report(Sink& sink, wind::LinkState state, const std::string& detail) {
   if (state == reported_state_ && detail == reported_detail_) return;
   reported_state_ = state;
   reported_detail_ = detail;

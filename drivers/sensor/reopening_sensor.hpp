@@ -16,7 +16,7 @@ namespace yuragi::drivers::sensor {
 /// The waits begin small again once the device has sent a valid message, not when it merely opened.
 class ReopeningSensor : public Sensor {
  public:
-  MonoTime poll(const Clock& clock, SensorSink& sink) final;
+  MonoTime poll(const Clock& clock, Sink& sink) final;
 
  protected:
   /// `seed` makes the waits of several sensors differ.
@@ -28,7 +28,7 @@ class ReopeningSensor : public Sensor {
 
   /// One exchange with the open device, no longer than the device's own time-out. Returns when to call it next. On
   /// failure the device is closed and opened again; its text is the reason.
-  virtual Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) = 0;
+  virtual Result<MonoTime, Failure> work(const Clock& clock, Sink& sink) = 0;
 
   /// Closes the device. Called after a failed work() too; never twice.
   virtual void close() noexcept = 0;
@@ -38,14 +38,14 @@ class ReopeningSensor : public Sensor {
   virtual bool poll_for_return() { return false; }
 
   /// For work(): the device sends valid messages. `detail` is for people: what it is, and where.
-  void report_connected(SensorSink& sink, const std::string& detail);
+  void report_connected(Sink& sink, const std::string& detail);
   /// For work(): the device is open, but sends no valid messages; why, and what to do.
-  void report_unusable(SensorSink& sink, const std::string& detail);
+  void report_unusable(Sink& sink, const std::string& detail);
   /// For work(): the input has been read to its end.
-  void report_finished(SensorSink& sink, const std::string& detail);
+  void report_finished(Sink& sink, const std::string& detail);
 
  private:
-  void report(SensorSink& sink, wind::LinkState state, const std::string& detail);
+  void report(Sink& sink, wind::LinkState state, const std::string& detail);
 
   platform::Backoff backoff_;
   bool is_open_ = false;

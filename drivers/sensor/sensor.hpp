@@ -17,10 +17,10 @@ enum class RawDirection : std::uint8_t { kReceived, kSent };
 
 /// Receives a sensor's readings, link state, refusals and raw messages. Called on the thread that polls; strings are
 /// valid during the call only.
-class SensorSink {
+class Sink {
  public:
-  virtual ~SensorSink() = default;
-  virtual void reading(const wind::WindReading& reading) = 0;
+  virtual ~Sink() = default;
+  virtual void reading(const wind::Reading& reading) = 0;
   /// Receives the station's other quantities, for the recording. Values outside their physical range are left out.
   virtual void quantities(const wind::StationQuantities& /*quantities*/) {}
   virtual void refused(decode::Refusal why, std::uint64_t times = 1) = 0;
@@ -39,7 +39,7 @@ class Sensor {
   /// Does the next piece of work: one exchange with the device, or one attempt to open it. Blocks no longer than the
   /// device's own time-out. Returns when it wants to be called again (at once, if that has passed). Never throws for
   /// anything that a device does.
-  virtual MonoTime poll(const Clock& clock, SensorSink& sink) = 0;
+  virtual MonoTime poll(const Clock& clock, Sink& sink) = 0;
 
   /// Ends a poll() that waits, from another thread, so that shutting down is quick. No poll() follows.
   virtual void interrupt() noexcept {}

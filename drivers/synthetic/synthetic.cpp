@@ -8,33 +8,33 @@ namespace {
 
 using wind::turbulence::SyntheticWindSettings;
 
-struct SyntheticKeys {
+struct Keys {
   SyntheticWindSettings wind;
   Nanoseconds interval{};
 };
 
 auto of(auto member) {
-  return member_of(&SyntheticKeys::wind, member);
+  return member_of(&Keys::wind, member);
 }
 
-const Fields<SyntheticKeys> kSyntheticFields = {
+const Fields<Keys> kSyntheticFields = {
     {{"speed", "m/s", 5.0, 0.0, 60.0, "mean wind speed"}, of(&SyntheticWindSettings::mean_speed_m_s)},
     {{"direction", "deg", 240.0, 0.0, 360.0, "direction that the wind comes from, clockwise from north"},
      of(&SyntheticWindSettings::mean_direction_deg)},
     {{"turbulence", "", 0.3, 0.0, 1.0, "turbulence intensity: standard deviation over mean speed"},
      of(&SyntheticWindSettings::turbulence_intensity)},
     {{"rate", "Hz", 4.0, 0.01, 100.0, "readings per second"},
-     &SyntheticKeys::interval,
+     &Keys::interval,
      [](double rate_hz) { return from_seconds(1.0 / rate_hz); }},
     {{.name = "seed", .default_value = std::int64_t{1}, .min = 0, .help = "the same seed gives the same wind"},
      of(&SyntheticWindSettings::seed)},
 };
 
-class SyntheticSensor final : public sensor::Sensor {
+class Sensor final : public sensor::Sensor {
  public:
-  explicit SyntheticSensor(const SyntheticKeys& keys) : wind_(keys.wind), interval_(keys.interval) {}
+  explicit Sensor(const Keys& keys) : wind_(keys.wind), interval_(keys.interval) {}
 
-  MonoTime poll(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+  MonoTime poll(const sensor::Clock& clock, sensor::Sink& sink) override {
     const Instant now = clock.now();
     if (count_ == 0) {
       begun_ = now.mono;
@@ -43,7 +43,7 @@ class SyntheticSensor final : public sensor::Sensor {
     const MonoTime due = begun_ + count_ * interval_;
     if (now.mono < due) return due;
 
-    const wind::WindVector wind = wind_.at(seconds(now.mono - begun_));
+    const wind::Vector wind = wind_.at(seconds(now.mono - begun_));
     sink.reading({.time = now,
                   .speed_m_s = speed_of(wind),
                   .direction_deg = wind::direction_from_deg(wind),
@@ -70,7 +70,7 @@ const sensor::DriverDescription kSyntheticDriver{
     .summary = "seeded synthetic wind; no hardware",
     .parameters = kSyntheticFields.parameters(),
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
-      return std::make_unique<SyntheticSensor>(kSyntheticFields.of(values));
+      return std::make_unique<Sensor>(kSyntheticFields.of(values));
     },
     .stated_value =
         [](const ParameterValues&) {

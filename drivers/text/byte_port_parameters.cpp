@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 4> kByteTransports = {"serial", "tcp", "u
 constexpr std::array<std::string_view, 3> kByteParities = {"none", "even", "odd"};
 
 struct BytePortKeys {
-  TextSensorSettings text;
+  SensorSettings text;
   std::string file;
 };
 
@@ -29,7 +29,7 @@ auto of_text(auto member) {
   return member_of(&BytePortKeys::text, member);
 }
 auto of_address(auto member) {
-  return member_of(&BytePortKeys::text, &TextSensorSettings::address, member);
+  return member_of(&BytePortKeys::text, &SensorSettings::address, member);
 }
 
 /// The transports of all drivers, in the order of BytePortKind.
@@ -86,26 +86,26 @@ const Fields<BytePortKeys>& byte_port_fields() {
       {{"play_rate", "Hz", 0.0, 0.0, 1e6,
         "file: 0 follows what is appended to it; otherwise it is played once from its beginning, with this many "
         "readings per second"},
-       of_text(&TextSensorSettings::play_rate_hz)},
+       of_text(&SensorSettings::play_rate_hz)},
       {{.name = "request",
         .default_value = std::string(""),
         .help = "request for one reading, with its line end (\"?\\r\\n\"); empty: the format's own",
         .takes_control_characters = true},
-       of_text(&TextSensorSettings::request)},
+       of_text(&SensorSettings::request)},
       {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between requests; 0: the device sends without requests"},
-       of_text(&TextSensorSettings::poll_interval),
+       of_text(&SensorSettings::poll_interval),
        from_seconds},
       {{"response_timeout", "s", 0.5, 0.05, 60.0, "maximum wait for the reply to a request"},
-       of_text(&TextSensorSettings::response_timeout),
+       of_text(&SensorSettings::response_timeout),
        from_seconds},
       {{"silence_timeout", "s", 0.0, 0.0, 86400.0,
         "a device that is silent for this long is reopened; 0: ten times its usual pause between readings, at "
         "least 6 s, doubled after each attempt without a reading"},
-       of_text(&TextSensorSettings::silence_timeout),
+       of_text(&SensorSettings::silence_timeout),
        from_seconds},
       {{"delay_after_open", "s", 0.0, 0.0, 60.0,
         "messages are discarded for this long after opening; an Arduino restarts each time its port is opened"},
-       of_text(&TextSensorSettings::delay_after_open),
+       of_text(&SensorSettings::delay_after_open),
        from_seconds},
   };
   return kPortFields;
@@ -134,9 +134,9 @@ std::vector<Parameter> with_byte_port_parameters(std::span<const Parameter> own,
   return all;
 }
 
-TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
+SensorSettings text_sensor_settings_of(const ParameterValues& values) {
   BytePortKeys keys = byte_port_fields().of(values);
-  TextSensorSettings& text = keys.text;
+  SensorSettings& text = keys.text;
   BytePortAddress& address = text.address;
   address.is_played = text.play_rate_hz > 0.0;
   const bool has_line = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;

@@ -15,7 +15,7 @@ std::vector<Parameter> with_byte_port_parameters(std::span<const Parameter> own,
 
 /// The values of these, and of "interface" if a driver's transport may be "can". Throws std::runtime_error, with what
 /// to do, if they cannot work together.
-TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
+SensorSettings text_sensor_settings_of(const ParameterValues& values);
 
 /// Where a sensor of such values reads, as it is configured, and the endpoint that this is. Do not throw.
 bus::BytePortAddress byte_port_address_of(const ParameterValues& values);

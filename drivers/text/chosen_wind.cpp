@@ -79,10 +79,10 @@ sensor::SelectedPart reference_part(const ChosenWindSettings& settings) {
           .value = settings.frame ? std::string(kChosenFrames.at(1 + static_cast<std::size_t>(*settings.frame))) : ""};
 }
 
-Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(const WindChoice::Source& source,
-                                                                            const decode::DecodedWind& wind,
-                                                                            const Instant& now) {
-  using Offered = std::optional<wind::WindReading>;
+Result<std::optional<wind::Reading>, decode::Refusal> ChosenWind::offer(const WindChoice::Source& source,
+                                                                        const decode::DecodedWind& wind,
+                                                                        const Instant& now) {
+  using Offered = std::optional<wind::Reading>;
   const WindChoice::Said said = {.has_speed = wind.speed_m_s.has_value(),
                                  .has_direction = wind.direction_deg.has_value(),
                                  .is_calm = is_calm(wind.speed_m_s)};
@@ -100,7 +100,7 @@ Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(cons
   if (!direction_deg) direction_deg = direction_for(source.name, now.mono);
 
   const bool is_uncertain = wind.status == decode::DecodedStatus::kUncertain;
-  const wind::WindReading reading = {
+  const wind::Reading reading = {
       .time = now,
       .speed_m_s = wind.speed_m_s.value(),
       .direction_deg = direction_deg,
@@ -115,7 +115,7 @@ Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(cons
   return Offered(reading);
 }
 
-std::optional<wind::WindReading> ChosenWind::take_held() {
+std::optional<wind::Reading> ChosenWind::take_held() {
   if (held_) choice_.settle();
   return std::exchange(held_, std::nullopt);
 }
@@ -137,7 +137,7 @@ std::optional<double> ChosenWind::direction_for(const std::string& source, MonoT
   return kept.direction_deg;
 }
 
-void ChosenWind::name_sources(const std::string& source, const wind::WindReading& reading) {
+void ChosenWind::name_sources(const std::string& source, const wind::Reading& reading) {
   const std::string& direction_source = choice_.direction_source();
   if (direction_source.empty() || direction_source == source) {
     taken_ = source;

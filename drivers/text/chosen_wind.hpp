@@ -43,15 +43,15 @@ class ChosenWind {
 
   /// Takes a source's wind. Returns what to publish now: nullopt if it has no speed, is another source's wind, or is
   /// held until the first burst is over. kNotMine: not in the configured frame.
-  Result<std::optional<wind::WindReading>, decode::Refusal> offer(const WindChoice::Source& source,
-                                                                  const decode::DecodedWind& wind, const Instant& now);
+  Result<std::optional<wind::Reading>, decode::Refusal> offer(const WindChoice::Source& source,
+                                                              const decode::DecodedWind& wind, const Instant& now);
   /// The same of a source whose frame is that of its direction.
-  Result<std::optional<wind::WindReading>, decode::Refusal> offer(const std::string& source,
-                                                                  const decode::DecodedWind& wind, const Instant& now) {
+  Result<std::optional<wind::Reading>, decode::Refusal> offer(const std::string& source,
+                                                              const decode::DecodedWind& wind, const Instant& now) {
     return offer({.name = source, .frame = frame_of_reference(wind.reference)}, wind, now);
   }
   /// The burst is over: what was held until then.
-  std::optional<wind::WindReading> take_held();
+  std::optional<wind::Reading> take_held();
   /// The device was opened again.
   void restart();
 
@@ -68,11 +68,11 @@ class ChosenWind {
   };
 
   std::optional<double> direction_for(const std::string& source, MonoTime now);
-  void name_sources(const std::string& source, const wind::WindReading& reading);
+  void name_sources(const std::string& source, const wind::Reading& reading);
 
   ChosenWindSettings settings_;
   WindChoice choice_;
-  std::optional<wind::WindReading> held_;
+  std::optional<wind::Reading> held_;
   std::optional<KeptDirection> kept_direction_;
   std::string taken_;
 };

@@ -29,14 +29,14 @@ std::size_t shape_of(std::string_view line, char separator) {
 }  // namespace
 
 LineSensor::LineSensor(LineSensorSettings settings, std::unique_ptr<bus::BytePort> port)
-    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)) {}
+    : Sensor(settings.text, std::move(port)), settings_(std::move(settings)) {}
 
 void LineSensor::begin() {
   last_shape_.reset();
   follows_garbage_ = false;
 }
 
-TextSensor::Judgement LineSensor::judge(std::string_view line, const Instant& now) {
+Sensor::Judgement LineSensor::judge(std::string_view line, const Instant& now) {
   if (!is_text(line)) {
     follows_garbage_ = true;
     return decode::Refusal::kMalformed;
@@ -56,11 +56,11 @@ TextSensor::Judgement LineSensor::judge(std::string_view line, const Instant& no
   if (direction_deg)
     direction_deg =
         decode::wrapped_direction_deg(*direction_deg + std::fmod(settings_.north_offset_deg + 360.0, 360.0));
-  return std::optional(wind::WindReading{.time = now,
-                                         .speed_m_s = *wind->speed_m_s,
-                                         .direction_deg = direction_deg,
-                                         .gust_m_s = wind->gust_m_s,
-                                         .quality = wind::ReadingQuality::kGood});
+  return std::optional(wind::Reading{.time = now,
+                                     .speed_m_s = *wind->speed_m_s,
+                                     .direction_deg = direction_deg,
+                                     .gust_m_s = wind->gust_m_s,
+                                     .quality = wind::ReadingQuality::kGood});
 }
 
 }  // namespace yuragi::drivers::text

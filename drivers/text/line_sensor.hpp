@@ -14,7 +14,7 @@
 namespace yuragi::drivers::text {
 
 struct LineSensorSettings {
-  TextSensorSettings text;
+  SensorSettings text;
   decode::text::LineOptions line;
   double north_offset_deg = 0.0;  ///< what to add to each direction
 };
@@ -31,7 +31,7 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values);
 /// A microcontroller that prints numbers, one reading a line, without a checksum. In place of a
 /// checksum the shape of lines is checked: a line of another shape than the one before it, or next to bytes that are no
 /// text, is refused.
-class LineSensor final : public TextSensor {
+class LineSensor final : public Sensor {
  public:
   LineSensor(LineSensorSettings settings, std::unique_ptr<bus::BytePort> port);
 

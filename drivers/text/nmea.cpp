@@ -130,7 +130,7 @@ std::string device_of(NmeaFormat format, const std::string& given) {
 
 /// The request and its interval, for a polled device.
 void set_request(NmeaSensorSettings& settings, const std::string& address) {
-  TextSensorSettings& text = settings.text;
+  SensorSettings& text = settings.text;
   const bool can_be_polled =
       text.address.kind == bus::BytePortKind::kSerial || text.address.kind == bus::BytePortKind::kTcpClient;
   // A Lufft sends nothing without a request.

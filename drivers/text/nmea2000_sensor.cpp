@@ -9,7 +9,7 @@
 namespace yuragi::drivers::text {
 
 Nmea2000Sensor::Nmea2000Sensor(Nmea2000SensorSettings settings, std::unique_ptr<bus::BytePort> port)
-    : TextSensor(settings.text, std::move(port)),
+    : Sensor(settings.text, std::move(port)),
       settings_(std::move(settings)),
       lines_(settings_.lines),
       wind_(settings_.wind) {}
@@ -19,7 +19,7 @@ void Nmea2000Sensor::begin() {
   lines_.restart();
 }
 
-TextSensor::Judgement Nmea2000Sensor::judge(std::string_view line, const Instant& now) {
+Sensor::Judgement Nmea2000Sensor::judge(std::string_view line, const Instant& now) {
   const auto said = lines_.decode(line);
   if (!said) return said.error();
   if (settings_.address && said->address != *settings_.address) return decode::Refusal::kNotMine;
@@ -57,9 +57,9 @@ std::string Nmea2000Sensor::told_trouble() const {
 
 std::string Nmea2000Sensor::advice(decode::Refusal why, std::string_view line) const {
   if (why == decode::Refusal::kNotMine) {
-    return TextSensor::advice(why, line) + " (format, address, reference), and that PGN 130306 is on the bus";
+    return Sensor::advice(why, line) + " (format, address, reference), and that PGN 130306 is on the bus";
   }
-  return TextSensor::advice(why, line);
+  return Sensor::advice(why, line);
 }
 
 }  // namespace yuragi::drivers::text

@@ -13,7 +13,7 @@
 namespace yuragi::drivers::text {
 
 struct Nmea2000SensorSettings {
-  TextSensorSettings text;
+  SensorSettings text;
   decode::marine::BusLineOptions lines;
   std::optional<std::uint8_t> address;  ///< take only this device's wind; nullopt: any
   ChosenWindSettings wind = {};
@@ -23,13 +23,13 @@ struct Nmea2000SensorSettings {
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values);
 
 /// Wind of an NMEA 2000 bus, as a gateway or program writes it in lines, or from a CAN interface.
-class Nmea2000Sensor final : public TextSensor {
+class Nmea2000Sensor final : public Sensor {
  public:
   Nmea2000Sensor(Nmea2000SensorSettings settings, std::unique_ptr<bus::BytePort> port);
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
-  std::optional<wind::WindReading> take_held() override { return wind_.take_held(); }
+  std::optional<wind::Reading> take_held() override { return wind_.take_held(); }
   void begin() override;
   std::string name() const override;
   std::string told_trouble() const override;

@@ -64,7 +64,7 @@ WindFrame frame_of(std::string_view sentence, decode::WindReference reference) {
 }  // namespace
 
 NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port)
-    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), wind_(settings_.wind) {}
+    : Sensor(settings.text, std::move(port)), settings_(std::move(settings)), wind_(settings_.wind) {}
 
 Result<decode::DecodedWind, decode::Refusal> NmeaSensor::decode(NmeaFormat format, std::string_view line) const {
   switch (format) {
@@ -93,7 +93,7 @@ Result<decode::DecodedWind, decode::Refusal> NmeaSensor::decode(NmeaFormat forma
       {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
 }
 
-TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& now) {
+Sensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& now) {
   const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
   const auto wind = decode(format, line);
   if (!wind) return wind.error();
@@ -146,13 +146,12 @@ std::string NmeaSensor::advice(decode::Refusal why, std::string_view line) const
            " without a checksum: set the device to send one, or missing_checksum to \"accept\"";
   }
   if (why == decode::Refusal::kMalformed && settings_.status == decode::WhenMissing::kRefuse) {
-    return TextSensor::advice(why, line) + "; if they have no status field, set missing_status to \"accept\"";
+    return Sensor::advice(why, line) + "; if they have no status field, set missing_status to \"accept\"";
   }
   if (why == decode::Refusal::kNotMine) {
-    return TextSensor::advice(why, line) +
-           " (format, sentences, talker, reference), and what the device is set to send";
+    return Sensor::advice(why, line) + " (format, sentences, talker, reference), and what the device is set to send";
   }
-  return TextSensor::advice(why, line);
+  return Sensor::advice(why, line);
 }
 
 }  // namespace yuragi::drivers::text

@@ -25,7 +25,7 @@ enum class NmeaFormat : std::uint8_t {
 };
 
 struct NmeaSensorSettings {
-  TextSensorSettings text;
+  SensorSettings text;
   NmeaFormat format = NmeaFormat::kAuto;
   std::vector<std::string> sentences;  ///< take these only (MWV, MWD, ...); none: all
   std::string talker;                  ///< take this one only; empty: any
@@ -42,14 +42,14 @@ struct NmeaSensorSettings {
 NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values);
 
 /// An anemometer that sends NMEA 0183, or the text of Gill, FT Technologies, Lufft or Vaisala.
-class NmeaSensor final : public TextSensor {
+class NmeaSensor final : public Sensor {
  public:
   NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port);
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
   std::optional<wind::StationQuantities> quantities_of(std::string_view line) const override;
-  std::optional<wind::WindReading> take_held() override { return wind_.take_held(); }
+  std::optional<wind::Reading> take_held() override { return wind_.take_held(); }
   void begin() override { wind_.restart(); }
   std::string name() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;

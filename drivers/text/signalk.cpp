@@ -101,8 +101,8 @@ void set_usual_port(bus::BytePortAddress& address) {
   if (address.port == 0) address.port = address.kind == bus::BytePortKind::kWebSocket ? kWebSocketPort : kTcpPort;
 }
 
-TextSensorSettings signalk_text_settings_of(const ParameterValues& values) {
-  TextSensorSettings text = text_sensor_settings_of(values);
+SensorSettings signalk_text_settings_of(const ParameterValues& values) {
+  SensorSettings text = text_sensor_settings_of(values);
   set_usual_port(text.address);
   return text;
 }
@@ -174,7 +174,7 @@ const sensor::DriverDescription kSignalKDriver{
     .selection =
         [](const ParameterValues& values) {
           const SignalKKeys keys = kSignalKFields.of(values);
-          const TextSensorSettings text = signalk_text_settings_of(values);
+          const SensorSettings text = signalk_text_settings_of(values);
           const bool is_websocket = text.address.kind == bus::BytePortKind::kWebSocket;
           return text_selection(
               text, {{.key = "path", .value = is_websocket ? keys.path : ""},

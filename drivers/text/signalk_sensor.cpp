@@ -11,7 +11,7 @@ namespace {
 /// More sources and quantities than any vessel has.
 constexpr std::size_t kMaxFirstTimes = 256;
 
-using Outcome = Result<std::optional<wind::WindReading>, decode::Refusal>;
+using Outcome = Result<std::optional<wind::Reading>, decode::Refusal>;
 
 /// Returns the better of two outcomes (a reading, nothing, a refusal), of equals the later one.
 Outcome better_of(const Outcome& earlier, const Outcome& later) {
@@ -22,7 +22,7 @@ Outcome better_of(const Outcome& earlier, const Outcome& later) {
 }  // namespace
 
 SignalKSensor::SignalKSensor(SignalKSensorSettings settings, std::unique_ptr<bus::BytePort> port)
-    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), wind_(settings_.wind) {}
+    : Sensor(settings.text, std::move(port)), settings_(std::move(settings)), wind_(settings_.wind) {}
 
 void SignalKSensor::begin() {
   wind_.restart();
@@ -31,10 +31,10 @@ void SignalKSensor::begin() {
   moment_.reset();
 }
 
-TextSensor::Judgement SignalKSensor::judge(std::string_view line, const Instant& now) {
+Sensor::Judgement SignalKSensor::judge(std::string_view line, const Instant& now) {
   if (auto hello = decode::marine::signalk_hello(line)) {
     hello_ = std::move(*hello);
-    return std::optional<wind::WindReading>();
+    return std::optional<wind::Reading>();
   }
   auto delta = decode::marine::decode_signalk(line);
   if (!delta) return delta.error();
@@ -78,7 +78,7 @@ bool SignalKSensor::is_remembered(const decode::marine::SignalKUpdate& update, s
   return true;
 }
 
-TextSensor::Judgement SignalKSensor::take(const decode::marine::SignalKUpdate& update, const Instant& now) {
+Sensor::Judgement SignalKSensor::take(const decode::marine::SignalKUpdate& update, const Instant& now) {
   const bool goes_on = moment_ && !update.timestamp.empty() && moment_->source == update.source &&
                        moment_->timestamp == update.timestamp;
   Judgement before = decode::Refusal::kNotMine;
@@ -93,8 +93,8 @@ TextSensor::Judgement SignalKSensor::take(const decode::marine::SignalKUpdate& u
 }
 
 /// Offers the winds of the moment that are complete, or all that have a speed when it is over.
-TextSensor::Judgement SignalKSensor::offer_moment(bool is_over) {
-  std::optional<wind::WindReading> reading;
+Sensor::Judgement SignalKSensor::offer_moment(bool is_over) {
+  std::optional<wind::Reading> reading;
   bool is_foreign = false;
   const auto winds = decode::marine::signalk_winds(moment_->values);
   for (std::size_t i = 0; i < winds.size(); ++i) {
@@ -110,8 +110,8 @@ TextSensor::Judgement SignalKSensor::offer_moment(bool is_over) {
   return reading;
 }
 
-std::optional<wind::WindReading> SignalKSensor::take_held() {
-  std::optional<wind::WindReading> last;
+std::optional<wind::Reading> SignalKSensor::take_held() {
+  std::optional<wind::Reading> last;
   if (moment_) {
     const Judgement rest = offer_moment(true);
     if (rest) last = *rest;
@@ -130,7 +130,7 @@ std::string SignalKSensor::advice(decode::Refusal why, std::string_view line) co
     return describe(settings().address) +
            " sends no new wind: check its anemometer, and the settings source, context and reference";
   }
-  return TextSensor::advice(why, line);
+  return Sensor::advice(why, line);
 }
 
 }  // namespace yuragi::drivers::text

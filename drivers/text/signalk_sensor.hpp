@@ -15,7 +15,7 @@
 namespace yuragi::drivers::text {
 
 struct SignalKSensorSettings {
-  TextSensorSettings text;
+  SensorSettings text;
   std::string source;   ///< take this one of the server's sources only; empty: any
   std::string context;  ///< take this vessel only; empty: the server's own
   ChosenWindSettings wind = {};
@@ -29,13 +29,13 @@ SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values);
 /// A server sends the values of one message one after the other; they make one wind by their source and time. To a new
 /// client it first sends what it remembers, however old that is: values from before the time in its hello are not used
 /// until their source sends one with another time.
-class SignalKSensor final : public TextSensor {
+class SignalKSensor final : public Sensor {
  public:
   SignalKSensor(SignalKSensorSettings settings, std::unique_ptr<bus::BytePort> port);
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
-  std::optional<wind::WindReading> take_held() override;
+  std::optional<wind::Reading> take_held() override;
   void begin() override;
   std::string name() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;

@@ -54,7 +54,7 @@ bool is_text(std::string_view line) noexcept {
       line, [&](char c) { return (c >= ' ' && c <= '~') || kOthers.find(c) != std::string_view::npos; });
 }
 
-sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own) {
+sensor::ValueSelection text_selection(const SensorSettings& settings, std::vector<sensor::SelectedPart> own) {
   std::string request = settings.poll_interval > Nanoseconds::zero() ? settings.request : "";
   make_printable(request);
   const bool has_senders = settings.address.kind == bus::BytePortKind::kUdp;
@@ -63,7 +63,7 @@ sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::v
   return sensor::selection_at(settings.address, std::move(own));
 }
 
-TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port)
+Sensor::Sensor(const SensorSettings& settings, std::unique_ptr<bus::BytePort> port)
     : sensor::ReopeningSensor(sensor::seed_of(describe(settings.address))),
       settings_(settings),
       where_(describe(settings.address)),
@@ -73,11 +73,11 @@ TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::
   settings_.response_timeout = std::min(settings_.response_timeout, settings_.poll_interval);
 }
 
-bool TextSensor::is_played() const noexcept {
+bool Sensor::is_played() const noexcept {
   return settings_.address.kind == bus::BytePortKind::kFile && settings_.address.is_played;
 }
 
-Result<MonoTime, Failure> TextSensor::open(const sensor::Clock& clock) {
+Result<MonoTime, Failure> Sensor::open(const sensor::Clock& clock) {
   if (const auto opened = port_->open(); !opened) return opened.error();
   const MonoTime now = clock.now().mono;
   is_fresh_ = settings_.delay_after_open > 0ns;
@@ -93,13 +93,13 @@ Result<MonoTime, Failure> TextSensor::open(const sensor::Clock& clock) {
   return now + settings_.delay_after_open;
 }
 
-void TextSensor::close() noexcept {
+void Sensor::close() noexcept {
   port_->close();
   assembler_.clear();
   rest_ = {};
 }
 
-Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> Sensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   if (is_finished_) return clock.now().mono + kForAges;
   if (std::exchange(is_fresh_, false)) {
     for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == bus::ByteStatus::kBytes; ++i) {
@@ -160,24 +160,24 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
   return now.mono;
 }
 
-bool TextSensor::is_connection() const noexcept {
+bool Sensor::is_connection() const noexcept {
   return settings_.address.kind == bus::BytePortKind::kSerial ||
          settings_.address.kind == bus::BytePortKind::kTcpClient;
 }
 
-bool TextSensor::can_send() const noexcept {
+bool Sensor::can_send() const noexcept {
   return is_connection() || settings_.address.kind == bus::BytePortKind::kWebSocket;
 }
 
 /// False: the port is lost.
-bool TextSensor::greet(sensor::SensorSink& sink) {
+bool Sensor::greet(sensor::Sink& sink) {
   if (!port_->write(bytes_of(settings_.greeting))) return false;
   sink.raw(sensor::RawDirection::kSent, bytes_of(settings_.greeting));
   return true;
 }
 
 /// False: the port is lost.
-bool TextSensor::request_if_due(MonoTime now, sensor::SensorSink& sink) {
+bool Sensor::request_if_due(MonoTime now, sensor::Sink& sink) {
   if (awaits_reply_ || now < next_request_) return true;
   drop_cut_line(sink);
   if (!port_->write(bytes_of(settings_.request))) return false;
@@ -189,20 +189,20 @@ bool TextSensor::request_if_due(MonoTime now, sensor::SensorSink& sink) {
 }
 
 /// The next request waits until a late reply has passed, which must not be taken for the next one.
-void TextSensor::give_up_reply(MonoTime now, sensor::SensorSink& sink) {
+void Sensor::give_up_reply(MonoTime now, sensor::Sink& sink) {
   awaits_reply_ = false;
   missed_replies_ = std::min(missed_replies_ + 1, kRarestRequest);
   next_request_ = now + std::max<Nanoseconds>(kLatestReply, missed_replies_ * settings_.poll_interval);
   refuse(decode::Refusal::kTimeout, "", sink);
 }
 
-Nanoseconds TextSensor::longest_read(MonoTime now) const {
+Nanoseconds Sensor::longest_read(MonoTime now) const {
   if (!is_polled()) return kMaxRead;
   const MonoTime due = awaits_reply_ ? reply_due_ : next_request_;
   return std::clamp<Nanoseconds>(due - now, 0ns, kMaxRead);
 }
 
-bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {
+bool Sensor::take_bytes(const Instant& now, sensor::Sink& sink) {
   // On a line in which bytes follow each other, a pause within a line means that its end is missing. Files and pipes
   // come in blocks that end anywhere, and datagrams end by themselves.
   const bool flows = is_connection();
@@ -228,14 +228,14 @@ bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {
 }
 
 /// Takes a line that was too long, or was cut off by the next one; only its last bytes are kept.
-void TextSensor::take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::SensorSink& sink) {
+void Sensor::take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::Sink& sink) {
   if (std::exchange(skips_line_, false)) return;
   if (why == decode::Refusal::kMalformed) ++garbled_lines_;
   sink.raw(sensor::RawDirection::kReceived, end);
   refuse(why, "", sink);
 }
 
-bool TextSensor::take_line(std::string_view line, const Instant& now, sensor::SensorSink& sink) {
+bool Sensor::take_line(std::string_view line, const Instant& now, sensor::Sink& sink) {
   if (std::exchange(skips_line_, false)) return false;
   sink.raw(sensor::RawDirection::kReceived, bytes_of(line));
   if (is_polled() && !awaits_reply_) {
@@ -264,14 +264,14 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, sensor::Se
 }
 
 /// Refuses the received part of an incomplete line.
-void TextSensor::drop_cut_line(sensor::SensorSink& sink) {
+void Sensor::drop_cut_line(sensor::Sink& sink) {
   const auto cut = assembler_.finish();
   if (!cut) return;
   sink.raw(sensor::RawDirection::kReceived, bytes_of(**cut));
   if (!std::exchange(skips_line_, false)) refuse(decode::Refusal::kTooShort, **cut, sink);
 }
 
-void TextSensor::publish(const wind::WindReading& reading, sensor::SensorSink& sink) {
+void Sensor::publish(const wind::Reading& reading, sensor::Sink& sink) {
   const bool can_flood =
       settings_.address.kind == bus::BytePortKind::kUdp || settings_.address.kind == bus::BytePortKind::kCan;
   if (can_flood && !limit_.admits(reading.time.mono)) return sink.refused(decode::Refusal::kTooFrequent);
@@ -283,7 +283,7 @@ void TextSensor::publish(const wind::WindReading& reading, sensor::SensorSink& s
   sink.reading(reading);
 }
 
-void TextSensor::refuse(decode::Refusal why, std::string_view line, sensor::SensorSink& sink) {
+void Sensor::refuse(decode::Refusal why, std::string_view line, sensor::Sink& sink) {
   Refused& refused = refused_[static_cast<std::size_t>(why)];
   if (refused.count++ == 0) refused.first_line = line;
   sink.refused(why);
@@ -291,7 +291,7 @@ void TextSensor::refuse(decode::Refusal why, std::string_view line, sensor::Sens
 
 /// Each opening without a reading doubles the limit: so a device that is slow at first, or that restarts whenever it is
 /// opened, gets enough time in the end.
-Nanoseconds TextSensor::silence_limit() const {
+Nanoseconds Sensor::silence_limit() const {
   if (settings_.silence_timeout > 0ns) return settings_.silence_timeout;
   const Nanoseconds usual = readings_.usual_pause();
   const Nanoseconds first = usual > 0ns ? std::max<Nanoseconds>(2 * kPatience, 10 * usual) : kFirstSilence;
@@ -299,7 +299,7 @@ Nanoseconds TextSensor::silence_limit() const {
 }
 
 /// Reports the cause if there are no readings.
-void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
+void Sensor::judge_device(MonoTime now, sensor::Sink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
   if (const std::string told = told_trouble(); !told.empty()) return report_unusable(sink, told);
@@ -316,12 +316,12 @@ void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
   }
 }
 
-std::size_t TextSensor::cut_lines() const {
+std::size_t Sensor::cut_lines() const {
   return refused_[static_cast<std::size_t>(decode::Refusal::kTooShort)].count;
 }
 
 /// The reason why most lines were refused: lines of other formats count only if there are no others.
-decode::Refusal TextSensor::main_refusal() const {
+decode::Refusal Sensor::main_refusal() const {
   constexpr auto kOthers = static_cast<std::size_t>(decode::Refusal::kNotMine);
   std::size_t most = kOthers;
   for (std::size_t why = 0; why < refused_.size(); ++why) {
@@ -331,7 +331,7 @@ decode::Refusal TextSensor::main_refusal() const {
   return static_cast<decode::Refusal>(most);
 }
 
-std::string TextSensor::silence_trouble() const {
+std::string Sensor::silence_trouble() const {
   std::string_view suspects = "the device's power and network settings";
   if (settings_.address.kind == bus::BytePortKind::kSerial)
     suspects = "the device's power, its wires (TX and RX crossed?) and baud";
@@ -343,7 +343,7 @@ std::string TextSensor::silence_trouble() const {
 }
 
 /// Bytes arrive, but no lines.
-std::string TextSensor::trouble_without_lines() const {
+std::string Sensor::trouble_without_lines() const {
   if (late_lines_ > 0) {
     return fmt::format("{} replies, but not within {:g} s: increase response_timeout", where_,
                        seconds(settings_.response_timeout));
@@ -356,7 +356,7 @@ std::string TextSensor::trouble_without_lines() const {
                      is_serial ? "baud, data_bits and parity" : "that this is the device, and that it sends text");
 }
 
-std::string TextSensor::advice(decode::Refusal why, std::string_view line) const {
+std::string Sensor::advice(decode::Refusal why, std::string_view line) const {
   switch (why) {
     case decode::Refusal::kInvalid:
       return fmt::format("{} reports that it cannot measure (\"{}\"): check the device", where_, shown(line));

@@ -21,7 +21,7 @@
 namespace yuragi::drivers::text {
 
 /// How a device that sends lines of text is read.
-struct TextSensorSettings {
+struct SensorSettings {
   bus::BytePortAddress address;
   decode::text::LineEnding ending = decode::text::LineEnding::kNewline;
   std::size_t longest_line = decode::text::LineAssembler::kMaxLine;  ///< longer ones are refused
@@ -36,25 +36,25 @@ struct TextSensorSettings {
 };
 
 /// What a sensor of such settings reads: `own` are the driver's parts, to which senders and the request are added.
-sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own);
+sensor::ValueSelection text_selection(const SensorSettings& settings, std::vector<sensor::SelectedPart> own);
 
 /// A device that sends one line per reading, by itself or on request. This base assembles lines from the bytes, sends
 /// requests, detects silence and invalid lines, and reports them; a driver decodes a line.
-class TextSensor : public sensor::ReopeningSensor {
+class Sensor : public sensor::ReopeningSensor {
  public:
   void interrupt() noexcept final { port_->interrupt(); }
 
  protected:
   /// Decodes a line: a reading, or nothing to publish for now, or a refusal.
-  using Judgement = Result<std::optional<wind::WindReading>, decode::Refusal>;
+  using Judgement = Result<std::optional<wind::Reading>, decode::Refusal>;
 
-  TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port);
+  Sensor(const SensorSettings& settings, std::unique_ptr<bus::BytePort> port);
 
   virtual Judgement judge(std::string_view line, const Instant& now) = 0;
   /// Returns the other quantities in a line, with or without a wind; the caller sets their time.
   virtual std::optional<wind::StationQuantities> quantities_of(std::string_view /*line*/) const { return {}; }
   /// After a pause that ends a burst of messages: a reading that was held until then.
-  virtual std::optional<wind::WindReading> take_held() { return {}; }
+  virtual std::optional<wind::Reading> take_held() { return {}; }
   /// The device was opened again: forget the messages before.
   virtual void begin() {}
   /// What the device is, for people.
@@ -65,11 +65,11 @@ class TextSensor : public sensor::ReopeningSensor {
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
 
-  const TextSensorSettings& settings() const noexcept { return settings_; }
+  const SensorSettings& settings() const noexcept { return settings_; }
 
  private:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) final;
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) final;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) final;
   void close() noexcept final;
 
   bool is_polled() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
@@ -77,28 +77,28 @@ class TextSensor : public sensor::ReopeningSensor {
   /// Serial or TCP: bytes follow each other, and can be sent.
   bool is_connection() const noexcept;
   bool can_send() const noexcept;
-  bool greet(sensor::SensorSink& sink);
-  bool request_if_due(MonoTime now, sensor::SensorSink& sink);
-  void give_up_reply(MonoTime now, sensor::SensorSink& sink);
+  bool greet(sensor::Sink& sink);
+  bool request_if_due(MonoTime now, sensor::Sink& sink);
+  void give_up_reply(MonoTime now, sensor::Sink& sink);
   Nanoseconds longest_read(MonoTime now) const;
 
   /// Splits received bytes into lines. Returns whether a reading was published, after which a file that is played has
   /// to wait.
-  bool take_bytes(const Instant& now, sensor::SensorSink& sink);
-  bool take_line(std::string_view line, const Instant& now, sensor::SensorSink& sink);
-  void take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::SensorSink& sink);
-  void drop_cut_line(sensor::SensorSink& sink);
-  void publish(const wind::WindReading& reading, sensor::SensorSink& sink);
-  void refuse(decode::Refusal why, std::string_view line, sensor::SensorSink& sink);
+  bool take_bytes(const Instant& now, sensor::Sink& sink);
+  bool take_line(std::string_view line, const Instant& now, sensor::Sink& sink);
+  void take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::Sink& sink);
+  void drop_cut_line(sensor::Sink& sink);
+  void publish(const wind::Reading& reading, sensor::Sink& sink);
+  void refuse(decode::Refusal why, std::string_view line, sensor::Sink& sink);
 
   Nanoseconds silence_limit() const;
-  void judge_device(MonoTime now, sensor::SensorSink& sink);
+  void judge_device(MonoTime now, sensor::Sink& sink);
   std::size_t cut_lines() const;
   decode::Refusal main_refusal() const;
   std::string silence_trouble() const;
   std::string trouble_without_lines() const;
 
-  TextSensorSettings settings_;
+  SensorSettings settings_;
   std::string where_;
   std::unique_ptr<bus::BytePort> port_;
   decode::text::LineAssembler assembler_;

@@ -26,9 +26,9 @@ using decode::usb::VaneCalibration;
 
 constexpr std::array<std::string_view, 3> kUsbDevices = {"auto", "mcc1208", "labjack-u3"};
 
-std::vector<const UsbDaqModel*> models_named(const std::string& name) {
-  std::vector<const UsbDaqModel*> models;
-  for (const UsbDaqModel* const model : usb_daq_models()) {
+std::vector<const DaqModel*> models_named(const std::string& name) {
+  std::vector<const DaqModel*> models;
+  for (const DaqModel* const model : usb_daq_models()) {
     if (name == kUsbDevices[0] || name == model->name) models.push_back(model);
   }
   return models;
@@ -39,30 +39,30 @@ std::optional<std::uint8_t> channel_of(std::int64_t channel) {
 }
 
 auto of_wiring(auto member) {
-  return member_of(&UsbSettings::wiring, member);
+  return member_of(&Settings::wiring, member);
 }
 auto of_cup(auto member) {
-  return member_of(&UsbSettings::cup, member);
+  return member_of(&Settings::cup, member);
 }
 auto of_vane(auto member) {
-  return member_of(&UsbSettings::vane, member);
+  return member_of(&Settings::vane, member);
 }
 
-const Fields<UsbSettings> kUsbFields = {
+const Fields<Settings> kUsbFields = {
     {{.name = "device",
       .default_value = std::string("auto"),
       .help = "which kind of counter and ADC device; auto: the first one found",
       .choices = kUsbDevices},
-     &UsbSettings::models,
+     &Settings::models,
      models_named},
     {{.name = "serial",
       .default_value = std::string(""),
       .help = "its serial number; not needed if there is only one device"},
-     &UsbSettings::serial},
+     &Settings::serial},
     {{.name = "port",
       .default_value = std::string(""),
       .help = "the USB port that it is plugged into, such as 1-2.3, if the serial number does not identify it"},
-     &UsbSettings::port},
+     &Settings::port},
     {{"counter", "", std::int64_t{0}, 0, 1, "the counter that the cup is connected to"},
      of_wiring(&DaqWiring::counter)},
     {{"metres_per_pulse", "m", 0.1, 0.001, 20.0, "the cup's slope: m/s for each pulse per second"},
@@ -73,7 +73,7 @@ const Fields<UsbSettings> kUsbFields = {
     {{"window", "s", 1.0, 0.05, 60.0, "maximum wait for these pulses, which limits the interval between readings"},
      of_cup(&CupCalibration::longest_window_s)},
     {{"sample_rate", "Hz", 10.0, 0.2, 100.0, "how often the counter and the vane are read"},
-     &UsbSettings::period,
+     &Settings::period,
      [](double rate_hz) { return from_seconds(1.0 / rate_hz); }},
     {{"vane_channel", "", std::int64_t{0}, -1, 7,
       "the analogue input that the vane's wiper is connected to; -1: there is no vane"},
@@ -90,22 +90,22 @@ const Fields<UsbSettings> kUsbFields = {
     {{"vane_highest", "", 1.0, 0.0, 1.0, "share of the reference voltage at its end"},
      of_vane(&VaneCalibration::highest_ratio)},
     {{"reference_voltage", "V", 5.0, 0.1, 20.0, "voltage across the track, if it is not measured"},
-     &UsbSettings::reference_v},
+     &Settings::reference_v},
     {{"reference_channel", "", std::int64_t{-1}, -1, 7,
       "analogue input that measures this voltage, because the 5 V of a USB port are not exact; -1: none"},
      of_wiring(&DaqWiring::reference_channel),
      channel_of},
-    {{"response_timeout", "s", 0.5, 0.01, 10.0, "maximum wait for a reply"}, &UsbSettings::timeout, from_seconds},
+    {{"response_timeout", "s", 0.5, 0.01, 10.0, "maximum wait for a reply"}, &Settings::timeout, from_seconds},
 };
 
-UsbSettings usb_settings_of(const ParameterValues& values) {
-  UsbSettings settings = kUsbFields.of(values);
+Settings usb_settings_of(const ParameterValues& values) {
+  Settings settings = kUsbFields.of(values);
   settings.cup.shortest_window_s = std::min(settings.cup.shortest_window_s, settings.cup.longest_window_s);
   return settings;
 }
 
 /// Throws if the values cannot work together.
-void check_together(const UsbSettings& settings) {
+void check_together(const Settings& settings) {
   if (settings.vane.lowest_ratio >= settings.vane.highest_ratio) {
     throw std::runtime_error("vane_lowest: must be below vane_highest");
   }
@@ -115,30 +115,30 @@ void check_together(const UsbSettings& settings) {
   }
   // With "auto" it is enough that one of the models can do it: which it is shows when one is plugged in.
   std::string wrong;
-  for (const UsbDaqModel* const model : settings.models) {
+  for (const DaqModel* const model : settings.models) {
     wrong = wrong_wiring(*model, settings.wiring);
     if (wrong.empty()) return;
   }
   throw std::runtime_error(wrong);
 }
 
-std::vector<bus::UsbId> ids_of(std::span<const UsbDaqModel* const> models) {
+std::vector<bus::UsbId> ids_of(std::span<const DaqModel* const> models) {
   std::vector<bus::UsbId> ids;
   ids.reserve(models.size());
-  for (const UsbDaqModel* const model : models) ids.push_back(model->id);
+  for (const DaqModel* const model : models) ids.push_back(model->id);
   return ids;
 }
 
 std::unique_ptr<sensor::Sensor> open_usb(const ParameterValues& values) {
-  UsbSettings settings = usb_settings_of(values);
+  Settings settings = usb_settings_of(values);
   check_together(settings);
   auto device = bus::make_usb_device(ids_of(settings.models));
   const std::uint32_t seed = sensor::seed_of("usb" + settings.serial + settings.port);
-  return std::make_unique<UsbSensor>(std::move(settings), seed, std::move(device));
+  return std::make_unique<Sensor>(std::move(settings), seed, std::move(device));
 }
 
 sensor::ValueSelection usb_selection(const ParameterValues& values) {
-  const UsbSettings settings = kUsbFields.of(values);
+  const Settings settings = kUsbFields.of(values);
   return {.device = "USB device",
           .parts = {
               {.key = "device", .value = settings.models.size() > 1 ? "" : std::string(settings.models.front()->name)},
@@ -151,8 +151,8 @@ std::vector<sensor::FoundDevice> find_usb() {
   const auto plugged = bus::make_usb_device(ids_of(usb_daq_models()))->plugged();
   if (!plugged) return found;
   for (const bus::PluggedUsbDevice& device : *plugged) {
-    const UsbDaqModel& model =
-        **std::ranges::find(usb_daq_models(), device.id, [](const UsbDaqModel* one) { return one->id; });
+    const DaqModel& model =
+        **std::ranges::find(usb_daq_models(), device.id, [](const DaqModel* one) { return one->id; });
     sensor::FoundDevice& one = found.emplace_back();
     one.what = fmt::format("{} ({}) at USB port {}", model.what, describe(model.id), device.port);
     one.settings = fmt::format("device = \"{}\"\n{} = \"{}\"", model.name, device.serial.empty() ? "port" : "serial",

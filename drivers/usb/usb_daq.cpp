@@ -6,12 +6,12 @@
 
 namespace yuragi::drivers::usb {
 
-std::span<const UsbDaqModel* const> usb_daq_models() {
+std::span<const DaqModel* const> usb_daq_models() {
   static constexpr std::array kModels = {&kMcc1208Model, &kLabjackModel};
   return kModels;
 }
 
-std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring) {
+std::string wrong_wiring(const DaqModel& model, const DaqWiring& wiring) {
   if (wiring.counter >= model.counters) {
     return fmt::format("counter: is {}; {} has counters 0 to {}", wiring.counter, model.what, model.counters - 1);
   }
@@ -24,7 +24,7 @@ std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring) {
   return "";
 }
 
-DaqTrouble trouble_of(bus::UsbStatus status, sensor::SensorSink& sink) {
+DaqTrouble trouble_of(bus::UsbStatus status, sensor::Sink& sink) {
   switch (status) {
     case bus::UsbStatus::kTimeout:
       sink.refused(decode::Refusal::kTimeout);
@@ -44,7 +44,7 @@ DaqTrouble trouble_of(bus::UsbStatus status, sensor::SensorSink& sink) {
   return {"was unplugged: plug it in again", true};
 }
 
-DaqTrouble trouble_of(decode::Refusal why, sensor::SensorSink& sink) {
+DaqTrouble trouble_of(decode::Refusal why, sensor::Sink& sink) {
   sink.refused(why);
   return {fmt::format("sends an invalid reply ({}): check its cable, and that no other program uses it", name_of(why))};
 }

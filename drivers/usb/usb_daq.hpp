@@ -42,39 +42,39 @@ struct DaqTrouble {
 
 /// The protocol of one kind of counter and ADC device. Holds the device's state from start() on; one is made each time
 /// that the device is opened. Every message is shown to the sink, every refusal counted there.
-class UsbDaq {
+class Daq {
  public:
-  virtual ~UsbDaq() = default;
+  virtual ~Daq() = default;
 
   /// Configures the device and reads its calibration.
-  virtual Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::SensorSink& sink) = 0;
+  virtual Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::Sink& sink) = 0;
 
-  virtual Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::SensorSink& sink) = 0;
+  virtual Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::Sink& sink) = 0;
 };
 
 /// A kind of such devices.
-struct UsbDaqModel {
+struct DaqModel {
   std::string_view name;  ///< in a configuration
   std::string_view what;  ///< for people
   bus::UsbId id;
   std::uint8_t counters = 1;
   std::uint8_t channels = 1;
-  std::unique_ptr<UsbDaq> (*make)(const DaqWiring& wiring, Nanoseconds timeout);
+  std::unique_ptr<Daq> (*make)(const DaqWiring& wiring, Nanoseconds timeout);
 };
 
-extern const UsbDaqModel kMcc1208Model;
-extern const UsbDaqModel kLabjackModel;
+extern const DaqModel kMcc1208Model;
+extern const DaqModel kLabjackModel;
 
 /// Every model.
-std::span<const UsbDaqModel* const> usb_daq_models();
+std::span<const DaqModel* const> usb_daq_models();
 
 /// A channel of the wiring that the model does not have; empty: none.
-std::string wrong_wiring(const UsbDaqModel& model, const DaqWiring& wiring);
+std::string wrong_wiring(const DaqModel& model, const DaqWiring& wiring);
 
 /// The trouble of a failed transfer, counted in `sink`.
-DaqTrouble trouble_of(bus::UsbStatus status, sensor::SensorSink& sink);
+DaqTrouble trouble_of(bus::UsbStatus status, sensor::Sink& sink);
 
 /// The trouble of a refused reply, counted in `sink`.
-DaqTrouble trouble_of(decode::Refusal why, sensor::SensorSink& sink);
+DaqTrouble trouble_of(decode::Refusal why, sensor::Sink& sink);
 
 }  // namespace yuragi::drivers::usb

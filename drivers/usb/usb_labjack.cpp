@@ -16,7 +16,7 @@ constexpr std::uint8_t kLabjackReplies = 2;
 /// How many replies to other requests are skipped before the request is given up.
 constexpr int kMaxStrangers = 16;
 
-class LabjackDaq final : public UsbDaq {
+class LabjackDaq final : public Daq {
  public:
   LabjackDaq(const DaqWiring& wiring, Nanoseconds timeout) : timeout_(timeout) {
     request_.analog_channel = wiring.vane_channel;
@@ -24,7 +24,7 @@ class LabjackDaq final : public UsbDaq {
     request_.counter = wiring.counter;
   }
 
-  Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::SensorSink& sink) override {
+  Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::Sink& sink) override {
     const auto identity =
         exchange(device, sink, decode::usb::encode_labjack_identity(), decode::usb::decode_labjack_identity);
     if (!identity) return identity.error();
@@ -53,7 +53,7 @@ class LabjackDaq final : public UsbDaq {
     return DaqIdentity{fmt::format("{}", identity->serial)};
   }
 
-  Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::SensorSink& sink) override {
+  Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::Sink& sink) override {
     ++request_.echo;
     const auto reply =
         exchange(device, sink, decode::usb::encode_labjack_feedback(request_),
@@ -70,8 +70,8 @@ class LabjackDaq final : public UsbDaq {
   /// Sends a command and decodes its reply. Replies to other commands, such as a late one to the command before, are
   /// counted and skipped.
   template <class Decode>
-  auto exchange(bus::UsbDevice& device, sensor::SensorSink& sink, const decode::usb::LabjackCommand& command,
-                Decode&& decode) -> Result<typename decltype(decode(decode::ByteSpan()))::value_type, DaqTrouble> {
+  auto exchange(bus::UsbDevice& device, sensor::Sink& sink, const decode::usb::LabjackCommand& command, Decode&& decode)
+      -> Result<typename decltype(decode(decode::ByteSpan()))::value_type, DaqTrouble> {
     sink.raw(sensor::RawDirection::kSent, command.span());
     const bus::UsbTransfer sent = device.write(kLabjackCommands, command.span(), timeout_);
     if (sent.status != bus::UsbStatus::kDone) return trouble_of(sent.status, sink);
@@ -98,7 +98,7 @@ class LabjackDaq final : public UsbDaq {
     return DaqTrouble{"replies to other requests, not to this one: check that no other program uses it"};
   }
 
-  static DaqTrouble exception(std::uint8_t error, sensor::SensorSink& sink) {
+  static DaqTrouble exception(std::uint8_t error, sensor::Sink& sink) {
     sink.refused(decode::Refusal::kException);
     if (error == 0) return {"reports a damaged command: check its cable"};
     return {fmt::format("refuses the command (error {}): check that no other program has configured it", error)};
@@ -110,17 +110,17 @@ class LabjackDaq final : public UsbDaq {
   std::array<std::uint8_t, 64> buffer_{};  // one packet
 };
 
-std::unique_ptr<UsbDaq> make_labjack_daq(const DaqWiring& wiring, Nanoseconds timeout) {
+std::unique_ptr<Daq> make_labjack_daq(const DaqWiring& wiring, Nanoseconds timeout) {
   return std::make_unique<LabjackDaq>(wiring, timeout);
 }
 
 }  // namespace
 
-const UsbDaqModel kLabjackModel{.name = "labjack-u3",
-                                .what = "LabJack U3",
-                                .id = {0x0CD5, 0x0003},
-                                .counters = 2,
-                                .channels = 4,
-                                .make = make_labjack_daq};
+const DaqModel kLabjackModel{.name = "labjack-u3",
+                             .what = "LabJack U3",
+                             .id = {0x0CD5, 0x0003},
+                             .counters = 2,
+                             .channels = 4,
+                             .make = make_labjack_daq};
 
 }  // namespace yuragi::drivers::usb

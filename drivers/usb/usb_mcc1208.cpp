@@ -7,11 +7,11 @@
 namespace yuragi::drivers::usb {
 namespace {
 
-class Mcc1208Daq final : public UsbDaq {
+class Mcc1208Daq final : public Daq {
  public:
   Mcc1208Daq(const DaqWiring& wiring, Nanoseconds timeout) : wiring_(wiring), timeout_(timeout) {}
 
-  Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::SensorSink& sink) override {
+  Result<DaqIdentity, DaqTrouble> start(bus::UsbDevice& device, sensor::Sink& sink) override {
     // The counter is not reset: nothing here needs it to begin at 0, and another program may read it.
     for (const auto& [channel, calibration] :
          {std::pair{wiring_.vane_channel, &vane_}, {wiring_.reference_channel, &reference_}}) {
@@ -25,7 +25,7 @@ class Mcc1208Daq final : public UsbDaq {
     return DaqIdentity{};
   }
 
-  Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::SensorSink& sink) override {
+  Result<DaqSample, DaqTrouble> sample(bus::UsbDevice& device, sensor::Sink& sink) override {
     DaqSample sample;
     if (wiring_.vane_channel) {
       const auto volts = read_volts(device, *wiring_.vane_channel, vane_, sink);
@@ -48,7 +48,7 @@ class Mcc1208Daq final : public UsbDaq {
 
  private:
   Result<double, DaqTrouble> read_volts(bus::UsbDevice& device, std::uint8_t channel,
-                                        const decode::usb::Mcc1208Calibration& calibration, sensor::SensorSink& sink) {
+                                        const decode::usb::Mcc1208Calibration& calibration, sensor::Sink& sink) {
     const auto reply = exchange(device, decode::usb::mcc1208_read_analog(channel), sink);
     if (!reply) return reply.error();
     const auto analog = decode::usb::decode_mcc1208_analog(*reply);
@@ -58,7 +58,7 @@ class Mcc1208Daq final : public UsbDaq {
 
   /// The reply, valid until the next one.
   Result<decode::ByteSpan, DaqTrouble> exchange(bus::UsbDevice& device, const decode::usb::Mcc1208Transfer& command,
-                                                sensor::SensorSink& sink) {
+                                                sensor::Sink& sink) {
     const std::array<std::uint8_t, 8> setup = {command.request_type, command.request,     low(command.value),
                                                high(command.value),  low(command.index),  high(command.index),
                                                low(command.length),  high(command.length)};
@@ -82,17 +82,17 @@ class Mcc1208Daq final : public UsbDaq {
   std::array<std::uint8_t, 8> buffer_{};
 };
 
-std::unique_ptr<UsbDaq> make_mcc1208_daq(const DaqWiring& wiring, Nanoseconds timeout) {
+std::unique_ptr<Daq> make_mcc1208_daq(const DaqWiring& wiring, Nanoseconds timeout) {
   return std::make_unique<Mcc1208Daq>(wiring, timeout);
 }
 
 }  // namespace
 
-const UsbDaqModel kMcc1208Model{.name = "mcc1208",
-                                .what = "MCC USB-1208FS-Plus",
-                                .id = {0x09DB, 0x00E8},
-                                .counters = 1,
-                                .channels = decode::usb::kMcc1208Inputs,
-                                .make = make_mcc1208_daq};
+const DaqModel kMcc1208Model{.name = "mcc1208",
+                             .what = "MCC USB-1208FS-Plus",
+                             .id = {0x09DB, 0x00E8},
+                             .counters = 1,
+                             .channels = decode::usb::kMcc1208Inputs,
+                             .make = make_mcc1208_daq};
 
 }  // namespace yuragi::drivers::usb

@@ -30,14 +30,14 @@ std::optional<double> MeanDirection::mean_deg() const {
   return turned_deg < 360.0 ? turned_deg : 0.0;  // a tiny negative value rounds up to a whole turn
 }
 
-UsbSensor::UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<bus::UsbDevice> device)
+Sensor::Sensor(Settings settings, std::uint32_t seed, std::unique_ptr<bus::UsbDevice> device)
     : sensor::ReopeningSensor(seed), settings_(std::move(settings)), device_(std::move(device)) {}
 
-UsbSensor::~UsbSensor() {
+Sensor::~Sensor() {
   device_->close();
 }
 
-Result<MonoTime, Failure> UsbSensor::open(const sensor::Clock& clock) {
+Result<MonoTime, Failure> Sensor::open(const sensor::Clock& clock) {
   // Select the device among those plugged in.
   auto plugged = device_->plugged();
   if (!plugged) return plugged.error();
@@ -49,7 +49,7 @@ Result<MonoTime, Failure> UsbSensor::open(const sensor::Clock& clock) {
 
   // Where one cannot be opened or turns out to be another, the next one is tried.
   const bus::PluggedUsbDevice& chosen = (*plugged)[turn_ % plugged->size()];
-  const UsbDaqModel& model = model_of(chosen.id);
+  const DaqModel& model = model_of(chosen.id);
   if (const std::string wrong = wrong_wiring(model, settings_.wiring); !wrong.empty()) {
     ++turn_;
     return Failure{wrong};
@@ -70,7 +70,7 @@ Result<MonoTime, Failure> UsbSensor::open(const sensor::Clock& clock) {
   return clock.now().mono;
 }
 
-Result<MonoTime, Failure> UsbSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> Sensor::work(const sensor::Clock& clock, sensor::Sink& sink) {
   const MonoTime begin = clock.now().mono;
   if (!is_started_) {
     const auto identity = daq_->start(*device_, sink);
@@ -92,7 +92,7 @@ Result<MonoTime, Failure> UsbSensor::work(const sensor::Clock& clock, sensor::Se
   return next;
 }
 
-void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::SensorSink& sink) {
+void Sensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::Sink& sink) {
   // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
   // the next one: a delayed thread must not appear as a lull or a gust.
   const Nanoseconds doubt = now.mono - requested_at;
@@ -129,28 +129,28 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
 }
 
 /// There was no sample. The pulses counted meanwhile are in the next one, over the time that has passed.
-Result<MonoTime, Failure> UsbSensor::suffer(const DaqTrouble& trouble, MonoTime again, sensor::SensorSink& sink) {
+Result<MonoTime, Failure> Sensor::suffer(const DaqTrouble& trouble, MonoTime again, sensor::Sink& sink) {
   const std::string detail = name_ + " " + trouble.message;
   if (trouble.is_lost || ++failures_ >= kRoundsBeforeReopen) return Failure{detail};
   report_unusable(sink, detail);
   return again;
 }
 
-bool UsbSensor::is_wanted(const bus::PluggedUsbDevice& device) const {
-  const bool is_kind = std::ranges::count(settings_.models, device.id, &UsbDaqModel::id) != 0;
+bool Sensor::is_wanted(const bus::PluggedUsbDevice& device) const {
+  const bool is_kind = std::ranges::count(settings_.models, device.id, &DaqModel::id) != 0;
   const bool is_there = settings_.port.empty() || device.port == settings_.port;
   // One that shows no serial number on the bus sends it on request.
   const bool may_be_it = settings_.serial.empty() || device.serial.empty() || device.serial == settings_.serial;
   return is_kind && is_there && may_be_it;
 }
 
-const UsbDaqModel& UsbSensor::model_of(const bus::UsbId& id) const {
-  return **std::ranges::find(settings_.models, id, &UsbDaqModel::id);
+const DaqModel& Sensor::model_of(const bus::UsbId& id) const {
+  return **std::ranges::find(settings_.models, id, &DaqModel::id);
 }
 
-std::string UsbSensor::name_of_wanted() const {
+std::string Sensor::name_of_wanted() const {
   std::string what;
-  for (const UsbDaqModel* const model : settings_.models) {
+  for (const DaqModel* const model : settings_.models) {
     what += fmt::format("{}{} ({})", what.empty() ? "" : " or ", model->what, describe(model->id));
   }
   if (!settings_.serial.empty()) what += " with serial number " + settings_.serial;
@@ -158,7 +158,7 @@ std::string UsbSensor::name_of_wanted() const {
   return what;
 }
 
-Failure UsbSensor::wrong_device(const std::string& serial) {
+Failure Sensor::wrong_device(const std::string& serial) {
   ++turn_;
   return Failure{fmt::format("{} has serial number {}, not {}: plug that one in, or correct `serial`", name_, serial,
                              settings_.serial)};

@@ -13,10 +13,10 @@
 namespace yuragi::drivers::usb {
 
 /// Calibration of a cup and a vane on a counter and ADC device, and which device it is.
-struct UsbSettings {
-  std::vector<const UsbDaqModel*> models;  ///< any of these
-  std::string port;                        ///< the one that is plugged in there; empty: anywhere
-  std::string serial;                      ///< the one with this serial number; empty: any
+struct Settings {
+  std::vector<const DaqModel*> models;  ///< any of these
+  std::string port;                     ///< the one that is plugged in there; empty: anywhere
+  std::string serial;                   ///< the one with this serial number; empty: any
   DaqWiring wiring;
   decode::usb::CupCalibration cup;
   decode::usb::VaneCalibration vane;
@@ -40,32 +40,32 @@ class MeanDirection {
 
 /// A cup anemometer on the counter and a potentiometer vane on the ADC of a USB device. Samples both at a steady rate
 /// and publishes whenever the cup's window closes: its speed, and the mean of the vane's directions in that window.
-class UsbSensor final : public sensor::ReopeningSensor {
+class Sensor final : public sensor::ReopeningSensor {
  public:
-  UsbSensor(UsbSettings settings, std::uint32_t seed, std::unique_ptr<bus::UsbDevice> device);
-  ~UsbSensor() override;
+  Sensor(Settings settings, std::uint32_t seed, std::unique_ptr<bus::UsbDevice> device);
+  ~Sensor() override;
 
   void interrupt() noexcept override { device_->interrupt(); }
 
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
-  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override;
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override;
   void close() noexcept override { device_->close(); }
   bool poll_for_return() override { return device_->take_arrival(); }
 
  private:
   bool is_wanted(const bus::PluggedUsbDevice& device) const;
-  const UsbDaqModel& model_of(const bus::UsbId& id) const;
+  const DaqModel& model_of(const bus::UsbId& id) const;
   std::string name_of_wanted() const;
   Failure wrong_device(const std::string& serial);
-  Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, sensor::SensorSink& sink);
-  void take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::SensorSink& sink);
+  Result<MonoTime, Failure> suffer(const DaqTrouble& trouble, MonoTime again, sensor::Sink& sink);
+  void take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::Sink& sink);
 
-  UsbSettings settings_;
+  Settings settings_;
   std::unique_ptr<bus::UsbDevice> device_;
 
   // Of the device that is open.
-  std::unique_ptr<UsbDaq> daq_;
+  std::unique_ptr<Daq> daq_;
   std::string name_;
   bool is_started_ = false;
   int failures_ = 0;             // rounds in a row

@@ -30,7 +30,7 @@ Result<LogMoment, Failure> parse_log_moment(std::string_view text) {
   return LogMoment(*moment);
 }
 
-Result<std::optional<Nanoseconds>, Failure> log_time_of(WindlogReader& reader, const LogMoment& moment) {
+Result<std::optional<Nanoseconds>, Failure> log_time_of(Reader& reader, const LogMoment& moment) {
   if (const auto* utc = std::get_if<UtcTime>(&moment)) return reader.log_time_of(*utc);
   return std::optional(std::get<Nanoseconds>(moment));
 }

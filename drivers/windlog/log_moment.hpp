@@ -9,7 +9,7 @@
 
 namespace yuragi::drivers::windlog {
 
-class WindlogReader;
+class Reader;
 
 /// A place in a recording: log time, or UTC.
 using LogMoment = std::variant<Nanoseconds, UtcTime>;
@@ -20,6 +20,6 @@ using LogMoment = std::variant<Nanoseconds, UtcTime>;
 Result<LogMoment, Failure> parse_log_moment(std::string_view text);
 
 /// Returns its log time in one recording: for UTC that of the first reading at or after it, nullopt if there is none.
-Result<std::optional<Nanoseconds>, Failure> log_time_of(WindlogReader& reader, const LogMoment& moment);
+Result<std::optional<Nanoseconds>, Failure> log_time_of(Reader& reader, const LogMoment& moment);
 
 }  // namespace yuragi::drivers::windlog

@@ -35,14 +35,14 @@ struct LoggedSensor {
 
 struct LoggedReading {
   Nanoseconds log_time{0};
-  std::size_t sensor = 0;     ///< index into WindlogReader::sensors()
-  wind::WindReading reading;  ///< with the times of the recording machine
+  std::size_t sensor = 0;  ///< index into Reader::sensors()
+  wind::Reading reading;   ///< with the times of the recording machine
 };
 
 /// The other quantities of a sensor's station in one second.
 struct LoggedQuantities {
   Nanoseconds log_time{0};             ///< below zero if it came before the first reading
-  std::size_t sensor = 0;              ///< index into WindlogReader::sensors()
+  std::size_t sensor = 0;              ///< index into Reader::sensors()
   wind::StationQuantities quantities;  ///< with the times of the recording machine
 };
 

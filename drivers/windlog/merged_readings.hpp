@@ -16,7 +16,7 @@ class MergedReadings {
  public:
   MergedReadings(sqlite::Database* database, std::vector<std::unique_ptr<ReadingBlocks>> streams);
 
-  /// As WindlogReader's.
+  /// As Reader's.
   Result<std::optional<LoggedReading>, Failure> next();
   void seek(Nanoseconds log_time);
 

@@ -10,8 +10,8 @@ namespace yuragi::drivers::windlog {
 
 /// Returns the reading of that time in the current row of `statement`, whose columns from `speed` on are speed,
 /// direction, gust and quality; nullopt if they cannot be a reading.
-inline std::optional<wind::WindReading> reading_of_columns(const sqlite::Statement& statement, int speed,
-                                                           const Instant& time) {
+inline std::optional<wind::Reading> reading_of_columns(const sqlite::Statement& statement, int speed,
+                                                       const Instant& time) {
   const int direction = speed + 1;
   const int gust = speed + 2;
   const int quality = speed + 3;
@@ -25,7 +25,7 @@ inline std::optional<wind::WindReading> reading_of_columns(const sqlite::Stateme
   const std::int64_t grade = statement.integer(quality);
   if (grade < 0 || grade > static_cast<std::int64_t>(wind::ReadingQuality::kSimulated)) return std::nullopt;
 
-  wind::WindReading reading;
+  wind::Reading reading;
   reading.time = time;
   reading.speed_m_s = statement.number(speed);
   if (is_number(direction)) reading.direction_deg = statement.number(direction);

@@ -21,7 +21,7 @@ std::uint64_t bits_of(const std::optional<double>& value) noexcept {
 
 }  // namespace
 
-void SessionCount::add(const wind::WindReading& reading) noexcept {
+void SessionCount::add(const wind::Reading& reading) noexcept {
   std::uint64_t hash = mix(0, static_cast<std::uint64_t>(reading.time.mono.time_since_epoch().count()));
   hash = mix(hash, static_cast<std::uint64_t>(reading.time.utc.time_since_epoch().count()));
   hash = mix(hash, bits_of(reading.speed_m_s));

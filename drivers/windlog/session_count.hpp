@@ -15,7 +15,7 @@ struct SessionCount {
   bool operator==(const SessionCount&) const = default;
 
   /// Counts a reading with the times that are stored.
-  void add(const wind::WindReading& reading) noexcept;
+  void add(const wind::Reading& reading) noexcept;
 };
 
 }  // namespace yuragi::drivers::windlog

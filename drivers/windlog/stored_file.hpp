@@ -21,7 +21,7 @@ Result<void, Failure> check_is_file(const std::filesystem::path& file);
 /// Is it a file that a writer had created, and was killed before it wrote to it?
 bool is_blank_file(const std::filesystem::path& file);
 
-/// Opens a file of any version of the format that this one reads. As WindlogReader::open(). A snapshot is read as it is
+/// Opens a file of any version of the format that this one reads. As Reader::open(). A snapshot is read as it is
 /// at this moment, independent of its writer; its readings must not be merged with their database.
 Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop,
                                              bool is_snapshot = false);

@@ -108,7 +108,7 @@ class FileCheck {
         if (block.empty()) break;
         for (const LoggedReading& logged : block) {
           const LoggedSensor& sensor = stored_.sensors[logged.sensor];
-          const wind::WindReading& reading = logged.reading;
+          const wind::Reading& reading = logged.reading;
           found_[{sensor.session, sensor.name}].add(reading);
           gaps.look(sensor.name, {index, sensor.session}, reading.time);
           result_.first = std::min(result_.first.value_or(reading.time.utc), reading.time.utc);

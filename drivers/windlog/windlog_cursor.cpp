@@ -18,11 +18,11 @@ Failure of_data(const Failure& failure) {
 
 }  // namespace
 
-Result<WindlogCursor, Failure> WindlogCursor::open(const std::filesystem::path& file, std::string_view sensor,
-                                                   const std::stop_token& stop) {
-  auto reader = WindlogReader::open(file, stop);
+Result<Cursor, Failure> Cursor::open(const std::filesystem::path& file, std::string_view sensor,
+                                     const std::stop_token& stop) {
+  auto reader = Reader::open(file, stop);
   if (!reader) return reader.error();
-  WindlogCursor cursor(std::move(*reader));
+  Cursor cursor(std::move(*reader));
   if (const auto chosen = cursor.choose(sensor); !chosen) return chosen.error();
   const auto interval = cursor.measure_interval();
   if (!interval) return interval.error();
@@ -30,7 +30,7 @@ Result<WindlogCursor, Failure> WindlogCursor::open(const std::filesystem::path& 
   return cursor;
 }
 
-Result<void, Failure> WindlogCursor::choose(std::string_view sensor) {
+Result<void, Failure> Cursor::choose(std::string_view sensor) {
   const std::string file = reader_.file().string();
   std::string wanted(sensor);
   if (wanted.empty()) {
@@ -59,7 +59,7 @@ Result<void, Failure> WindlogCursor::choose(std::string_view sensor) {
   return {};
 }
 
-Result<Nanoseconds, Failure> WindlogCursor::measure_interval() {
+Result<Nanoseconds, Failure> Cursor::measure_interval() {
   seek(Nanoseconds{0});
   std::vector<Nanoseconds> intervals;
   std::optional<Nanoseconds> before;
@@ -77,17 +77,17 @@ Result<Nanoseconds, Failure> WindlogCursor::measure_interval() {
   return std::max(*middle, kMinInterval);
 }
 
-Result<std::optional<LoggedReading>, Failure> WindlogCursor::next() {
+Result<std::optional<LoggedReading>, Failure> Cursor::next() {
   const auto logged = reader_.next();
   if (!logged) return of_data(logged.error());
   return *logged;
 }
 
-void WindlogCursor::seek(Nanoseconds log_time) {
+void Cursor::seek(Nanoseconds log_time) {
   reader_.seek(log_time);
 }
 
-Result<std::optional<Nanoseconds>, Failure> WindlogCursor::find(const LogMoment& moment) {
+Result<std::optional<Nanoseconds>, Failure> Cursor::find(const LogMoment& moment) {
   const auto found = log_time_of(reader_, moment);
   if (!found) return of_data(found.error());
   return *found;

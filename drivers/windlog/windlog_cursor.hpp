@@ -18,13 +18,13 @@ namespace yuragi::drivers::windlog {
 ///
 /// Owns the open file. A Failure names the file that cannot be read; the next call tries the same place again.
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
-class WindlogCursor {
+class Cursor {
  public:
   /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Fails also if there is no such
   /// sensor, or no reading at all. `stop`: a request of it ends this call, and later ones, within milliseconds with a
   /// failure.
-  static Result<WindlogCursor, Failure> open(const std::filesystem::path& file, std::string_view sensor,
-                                             const std::stop_token& stop = {});
+  static Result<Cursor, Failure> open(const std::filesystem::path& file, std::string_view sensor,
+                                      const std::stop_token& stop = {});
 
   /// Returns the next reading; nullopt at the end, until more has been recorded.
   Result<std::optional<LoggedReading>, Failure> next();
@@ -42,15 +42,15 @@ class WindlogCursor {
   /// The median of the first intervals; one second if there are none, and never less than a millisecond.
   Nanoseconds interval() const noexcept { return interval_; }
 
-  const WindlogReader& reader() const noexcept { return reader_; }
+  const Reader& reader() const noexcept { return reader_; }
   const LoggedSensor& sensor_of(const LoggedReading& logged) const { return reader_.sensors()[logged.sensor]; }
 
  private:
-  explicit WindlogCursor(WindlogReader reader) : reader_(std::move(reader)) {}
+  explicit Cursor(Reader reader) : reader_(std::move(reader)) {}
   Result<void, Failure> choose(std::string_view sensor);
   Result<Nanoseconds, Failure> measure_interval();
 
-  WindlogReader reader_;
+  Reader reader_;
   Nanoseconds last_{0};
   Nanoseconds interval_{0};
 };

@@ -14,7 +14,7 @@ constexpr Nanoseconds kMinSeam = std::chrono::milliseconds(1);
 
 }  // namespace
 
-Result<Nanoseconds, Failure> begin_of_playback(WindlogCursor& cursor, std::string_view start) {
+Result<Nanoseconds, Failure> begin_of_playback(Cursor& cursor, std::string_view start) {
   const auto moment = parse_log_moment(start);
   if (!moment) return moment.error();
   const std::string file = cursor.reader().file().string();
@@ -36,11 +36,11 @@ Result<Nanoseconds, Failure> begin_of_playback(WindlogCursor& cursor, std::strin
   return begin;
 }
 
-struct WindlogPlayback::State {
-  State(WindlogCursor opened, bool loops, Nanoseconds from)
+struct Playback::State {
+  State(Cursor opened, bool loops, Nanoseconds from)
       : cursor(std::move(opened)), loop(loops), begin(from), shift(-from) {}
 
-  WindlogCursor cursor;
+  Cursor cursor;
   bool loop = false;
   Nanoseconds begin{0};  ///< the log time at which the playback begins
 
@@ -61,7 +61,7 @@ struct WindlogPlayback::State {
 };
 
 /// Adds an interval inside a session to the mean.
-void WindlogPlayback::State::measure(const LoggedReading& logged) {
+void Playback::State::measure(const LoggedReading& logged) {
   const std::int64_t session = cursor.sensor_of(logged).session;
   if (has_played && session == last_session) {
     interval_sum += logged.log_time - last_in_file;
@@ -71,26 +71,25 @@ void WindlogPlayback::State::measure(const LoggedReading& logged) {
   last_in_file = logged.log_time;
 }
 
-Nanoseconds WindlogPlayback::State::seam() const {
+Nanoseconds Playback::State::seam() const {
   return interval_count == 0 ? kUnknownMeanInterval : std::max(interval_sum / interval_count, kMinSeam);
 }
 
-Result<WindlogPlayback, Failure> WindlogPlayback::open(const std::filesystem::path& file,
-                                                       const PlaybackOptions& options) {
-  auto cursor = WindlogCursor::open(file, options.sensor);
+Result<Playback, Failure> Playback::open(const std::filesystem::path& file, const PlaybackOptions& options) {
+  auto cursor = Cursor::open(file, options.sensor);
   if (!cursor) return cursor.error();
   const auto begin = begin_of_playback(*cursor, options.start);
   if (!begin) return begin.error();
-  return WindlogPlayback(std::make_unique<State>(std::move(*cursor), options.loop, *begin));
+  return Playback(std::make_unique<State>(std::move(*cursor), options.loop, *begin));
 }
 
-WindlogPlayback::WindlogPlayback(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Playback::Playback(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-WindlogPlayback::~WindlogPlayback() = default;
-WindlogPlayback::WindlogPlayback(WindlogPlayback&&) noexcept = default;
-WindlogPlayback& WindlogPlayback::operator=(WindlogPlayback&&) noexcept = default;
+Playback::~Playback() = default;
+Playback::Playback(Playback&&) noexcept = default;
+Playback& Playback::operator=(Playback&&) noexcept = default;
 
-Result<std::optional<PlayedReading>, Failure> WindlogPlayback::next() {
+Result<std::optional<PlayedReading>, Failure> Playback::next() {
   State& state = *state_;
   auto read = state.cursor.next();
   if (read && !*read) {
@@ -113,7 +112,7 @@ Result<std::optional<PlayedReading>, Failure> WindlogPlayback::next() {
   return std::optional(PlayedReading{seconds(state.last), logged->reading, state.cursor.sensor_of(*logged).name});
 }
 
-std::size_t WindlogPlayback::skipped() const {
+std::size_t Playback::skipped() const {
   return state_->cursor.reader().skipped();
 }
 

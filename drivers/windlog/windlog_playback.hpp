@@ -26,9 +26,9 @@ struct PlaybackOptions {
 
 /// A reading of a recording, and when it is played.
 struct PlayedReading {
-  double log_time_s = 0.0;    ///< since the start of the playback; never less than that of the reading before
-  wind::WindReading reading;  ///< as recorded, its own time included
-  std::string_view sensor;    ///< its sensor's name; lives as long as the playback
+  double log_time_s = 0.0;  ///< since the start of the playback; never less than that of the reading before
+  wind::Reading reading;    ///< as recorded, its own time included
+  std::string_view sensor;  ///< its sensor's name; lives as long as the playback
 };
 
 /// Plays a recording (.windlog) in log time, with no clock: the caller decides when a reading is due. Log time
@@ -38,14 +38,14 @@ struct PlayedReading {
 /// Reads in blocks, so that the length of a recording does not matter, and holds no lock between them: a recording that
 /// is still being written can be played up to its present end.
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
-class WindlogPlayback {
+class Playback {
  public:
   /// Fails, naming the file and what to do, if it cannot be read, has no such sensor or no reading, or if `start`
   /// cannot be understood or lies after the end.
-  static Result<WindlogPlayback, Failure> open(const std::filesystem::path& file, const PlaybackOptions& options = {});
-  ~WindlogPlayback();
-  WindlogPlayback(WindlogPlayback&&) noexcept;
-  WindlogPlayback& operator=(WindlogPlayback&&) noexcept;
+  static Result<Playback, Failure> open(const std::filesystem::path& file, const PlaybackOptions& options = {});
+  ~Playback();
+  Playback(Playback&&) noexcept;
+  Playback& operator=(Playback&&) noexcept;
 
   /// Returns the next reading, in the order of log time; nullopt at the end (never, if it loops). Fails on a read
   /// error; the next call tries the same place again.
@@ -56,14 +56,14 @@ class WindlogPlayback {
 
  private:
   struct State;
-  explicit WindlogPlayback(std::unique_ptr<State> state);
+  explicit Playback(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
-class WindlogCursor;
+class Cursor;
 
-/// Moves a cursor to `start`, and returns that log time. Fails as WindlogPlayback::open() does.
-Result<Nanoseconds, Failure> begin_of_playback(WindlogCursor& cursor, std::string_view start);
+/// Moves a cursor to `start`, and returns that log time. Fails as Playback::open() does.
+Result<Nanoseconds, Failure> begin_of_playback(Cursor& cursor, std::string_view start);
 
 /// Is this a `start` that PlaybackOptions takes? The failure's text: what it takes.
 Result<void, Failure> check_playback_start(std::string_view start);

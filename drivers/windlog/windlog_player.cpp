@@ -42,7 +42,7 @@ std::chrono::days days_between(std::span<const LoggedSession> sessions, Nanoseco
   return days;
 }
 
-bool is_same_wind(const wind::WindReading& a, const wind::WindReading& b) {
+bool is_same_wind(const wind::Reading& a, const wind::Reading& b) {
   return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg;
 }
 
@@ -59,13 +59,13 @@ std::optional<double> parse_relative(std::string_view text) {
 
 }  // namespace
 
-wind::WindReading between(const wind::WindReading& from, const wind::WindReading& to, double part) {
-  wind::WindReading reading = to;
+wind::Reading between(const wind::Reading& from, const wind::Reading& to, double part) {
+  wind::Reading reading = to;
   reading.speed_m_s = from.speed_m_s + part * (to.speed_m_s - from.speed_m_s);
   if (from.gust_m_s && to.gust_m_s) reading.gust_m_s = *from.gust_m_s + part * (*to.gust_m_s - *from.gust_m_s);
   if (!from.direction_deg || !to.direction_deg) return reading;
-  const wind::WindVector old_wind = wind::wind_from(from.speed_m_s, *from.direction_deg);
-  const wind::WindVector wind = old_wind + part * (wind::wind_from(to.speed_m_s, *to.direction_deg) - old_wind);
+  const wind::Vector old_wind = wind::wind_from(from.speed_m_s, *from.direction_deg);
+  const wind::Vector wind = old_wind + part * (wind::wind_from(to.speed_m_s, *to.direction_deg) - old_wind);
   reading.speed_m_s = speed_of(wind);
   // Where two opposite winds cancel out there is no direction; that of the new one is as good.
   if (reading.speed_m_s > 0.0) reading.direction_deg = wind::direction_from_deg(wind);
@@ -74,29 +74,29 @@ wind::WindReading between(const wind::WindReading& from, const wind::WindReading
 
 // ---- a playhead: one place of the recording that is played ----
 
-MonoTime WindlogPlayer::Playhead::due(double rate) const {
+MonoTime Player::Playhead::due(double rate) const {
   return anchor + wait_of(seconds(upcoming->log_time - anchor_log) / rate);
 }
 
-Nanoseconds WindlogPlayer::Playhead::place(MonoTime now, double rate) const {
+Nanoseconds Player::Playhead::place(MonoTime now, double rate) const {
   return anchor_log + wait_of(seconds(now - anchor) * rate);
 }
 
-void WindlogPlayer::Playhead::go_to(MonoTime at, Nanoseconds log_time) {
+void Player::Playhead::go_to(MonoTime at, Nanoseconds log_time) {
   anchor = at;
   anchor_log = log_time;
   last_log = log_time;
   is_frozen = false;
 }
 
-void WindlogPlayer::Playhead::take() {
+void Player::Playhead::take() {
   current = upcoming->reading;
   last_log = upcoming->log_time;
   upcoming.reset();
 }
 
 /// Leaves the whole days out of the gap before the upcoming reading, or of the gaps between sessions in it.
-void WindlogPlayer::Playhead::leave_out_days(bool only_between_sessions) {
+void Player::Playhead::leave_out_days(bool only_between_sessions) {
   const auto days = whole_days(upcoming->log_time - last_log);
   if (days.count() <= 0) return;
   anchor_log += only_between_sessions ? days_between(cursor.reader().sessions(), last_log, upcoming->log_time) : days;
@@ -104,16 +104,16 @@ void WindlogPlayer::Playhead::leave_out_days(bool only_between_sessions) {
 
 // ---- playing ----
 
-Result<WindlogPlayer, Failure> WindlogPlayer::open(const std::filesystem::path& file, PlayerOptions options,
-                                                   const Instant& now, const std::stop_token& stop) {
-  auto playing = WindlogCursor::open(file, options.playback.sensor, stop);
+Result<Player, Failure> Player::open(const std::filesystem::path& file, PlayerOptions options, const Instant& now,
+                                     const std::stop_token& stop) {
+  auto playing = Cursor::open(file, options.playback.sensor, stop);
   if (!playing) return playing.error();
-  auto leaving = WindlogCursor::open(file, options.playback.sensor, stop);
+  auto leaving = Cursor::open(file, options.playback.sensor, stop);
   if (!leaving) return leaving.error();
   const auto begin = begin_of_playback(*playing, options.playback.start);
   if (!begin) return begin.error();
-  WindlogPlayer player(std::move(options), Playhead{.cursor = std::move(*playing)},
-                       Playhead{.cursor = std::move(*leaving)}, *begin);
+  Player player(std::move(options), Playhead{.cursor = std::move(*playing)}, Playhead{.cursor = std::move(*leaving)},
+                *begin);
   const Nanoseconds place = player.options_.at_time_of_day ? player.place_of_day(now) : *begin;
   const Nanoseconds lead = player.is_paused_ ? Nanoseconds{0} : wait_of(player.options_.lead_s);
   if (lead > Nanoseconds{0}) player.led_to_ = place;
@@ -123,7 +123,7 @@ Result<WindlogPlayer, Failure> WindlogPlayer::open(const std::filesystem::path& 
   return player;
 }
 
-WindlogPlayer::WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin)
+Player::Player(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin)
     : options_(std::move(options)),
       playing_(std::move(playing)),
       leaving_(std::move(leaving)),
@@ -131,7 +131,7 @@ WindlogPlayer::WindlogPlayer(PlayerOptions options, Playhead playing, Playhead l
       is_paused_(options_.is_paused),
       begin_(begin) {}
 
-Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use) {
+Result<MonoTime, Failure> Player::play(const Instant& now, const Use& use) {
   if (is_finished_) return now.mono + kAfterTheEnd;
   if (is_paused_) return hold(now, use);
   for (int count = 0;; ++count) {
@@ -155,7 +155,7 @@ Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use
 }
 
 /// Reads the upcoming reading, unless it is already there, or the end is reached.
-Result<void, Failure> WindlogPlayer::fetch() {
+Result<void, Failure> Player::fetch() {
   if (playing_.upcoming) return {};
   auto read = playing_.cursor.next();
   if (!read && led_to_ && playing_.last_log < *led_to_) {
@@ -169,7 +169,7 @@ Result<void, Failure> WindlogPlayer::fetch() {
 }
 
 /// Is there an upcoming reading? At the end it begins again, or is finished.
-Result<bool, Failure> WindlogPlayer::look_ahead(const Instant& now) {
+Result<bool, Failure> Player::look_ahead(const Instant& now) {
   if (const auto fetched = fetch(); !fetched) return fetched.error();
   if (playing_.upcoming) return true;
   if (options_.playback.loop) {
@@ -182,13 +182,13 @@ Result<bool, Failure> WindlogPlayer::look_ahead(const Instant& now) {
 
 /// Is this part of a lead-in without a reading, where the first one is held? Not if it comes later than usual after the
 /// place to which the lead-in goes: the recording is silent there.
-bool WindlogPlayer::is_before_first_reading(MonoTime now) const {
+bool Player::is_before_first_reading(MonoTime now) const {
   return led_to_ && !playing_.current && playing_.upcoming && playing_.due(rate_) > now &&
          playing_.upcoming->log_time <= *led_to_ + playing_.cursor.interval();
 }
 
 /// Returns when it is due again.
-MonoTime WindlogPlayer::hold_first_reading(const Instant& now, const Use& use) {
+MonoTime Player::hold_first_reading(const Instant& now, const Use& use) {
   const MonoTime due = last_out_ ? last_out_->time.mono + hold_interval() : now.mono;
   if (due > now.mono) return due;
   give(playing_.upcoming->reading, now.mono, now, use);
@@ -196,13 +196,13 @@ MonoTime WindlogPlayer::hold_first_reading(const Instant& now, const Use& use) {
 }
 
 /// Has a loop come to where its next round begins, under what is left of this one?
-bool WindlogPlayer::is_at_seam() const {
+bool Player::is_at_seam() const {
   if (!options_.playback.loop || is_fading(playing_.due(rate_))) return false;
   const Nanoseconds overlap = wait_of(seconds(fade_duration()) * rate_);
   return overlap > Nanoseconds{0} && playing_.upcoming->log_time > playing_.cursor.last() - overlap;
 }
 
-Result<void, Failure> WindlogPlayer::begin_again(const Instant& now, MonoTime at) {
+Result<void, Failure> Player::begin_again(const Instant& now, MonoTime at) {
   if (auto jumped = jump(at, options_.at_time_of_day ? place_of_day(now) : begin_); !jumped) return jumped;
   // Its first reading comes at once, so that the seam is no longer than any interval.
   playing_.anchor_log = playing_.upcoming->log_time;
@@ -211,7 +211,7 @@ Result<void, Failure> WindlogPlayer::begin_again(const Instant& now, MonoTime at
 }
 
 /// Goes on from `target` at a moment, and fades what was playing out.
-Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
+Result<void, Failure> Player::jump(MonoTime at, Nanoseconds target) {
   led_to_.reset();
   // In the middle of a fade the blended wind of that moment replaces both playheads, and the older one is free.
   const bool was_fading = is_fading(at);
@@ -235,7 +235,7 @@ Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
   return {};
 }
 
-Nanoseconds WindlogPlayer::fade_duration() const {
+Nanoseconds Player::fade_duration() const {
   if (options_.seam_s <= 0.0) return Nanoseconds{0};
   const double interval_s = seconds(playing_.cursor.interval()) / rate_;
   const double span_s = seconds(playing_.cursor.last() - begin_) / rate_;
@@ -243,13 +243,13 @@ Nanoseconds WindlogPlayer::fade_duration() const {
 }
 
 /// Publishes the last reading of the playing playhead, as of a time, blended with that of one that is fading out.
-void WindlogPlayer::publish(MonoTime time, const Instant& now, const Use& use) {
+void Player::publish(MonoTime time, const Instant& now, const Use& use) {
   // After a change of the rate: time does not go backward.
   if (last_out_) time = std::max(time, last_out_->time.mono);
   give(blended(time), time, now, use);
 }
 
-void WindlogPlayer::give(wind::WindReading reading, MonoTime time, const Instant& now, const Use& use) {
+void Player::give(wind::Reading reading, MonoTime time, const Instant& now, const Use& use) {
   const bool is_waiting = is_paused_ || is_before_first_reading(now.mono);
   reading.time = {time, now.utc - (now.mono - time)};
   reading.is_held = is_waiting && last_out_ && is_same_wind(reading, *last_out_);
@@ -257,7 +257,7 @@ void WindlogPlayer::give(wind::WindReading reading, MonoTime time, const Instant
   use(reading);
 }
 
-wind::WindReading WindlogPlayer::blended(MonoTime time) {
+wind::Reading Player::blended(MonoTime time) {
   if (!is_fading(time)) return *playing_.current;
   const double done = std::max(0.0, seconds(time - fade_begin_) / seconds(fade_));
   const double part = done * done * (3.0 - 2.0 * done);
@@ -266,7 +266,7 @@ wind::WindReading WindlogPlayer::blended(MonoTime time) {
 }
 
 /// Advances the playhead that is fading out to a time; on a read error it repeats its last reading.
-void WindlogPlayer::follow_leaving(MonoTime time) {
+void Player::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
   for (;;) {
     if (!leaving_.upcoming) {
@@ -281,7 +281,7 @@ void WindlogPlayer::follow_leaving(MonoTime time) {
 }
 
 /// While it is paused: repeats the reading, so that the sensor does not become stale.
-Result<MonoTime, Failure> WindlogPlayer::hold(const Instant& now, const Use& use) {
+Result<MonoTime, Failure> Player::hold(const Instant& now, const Use& use) {
   if (!playing_.current) {
     const auto has_more = look_ahead(now);
     if (!has_more) return has_more.error();
@@ -295,21 +295,21 @@ Result<MonoTime, Failure> WindlogPlayer::hold(const Instant& now, const Use& use
   return now.mono + hold_interval();
 }
 
-void WindlogPlayer::take_while_paused() {
+void Player::take_while_paused() {
   playing_.anchor_log = playing_.upcoming->log_time;
   playing_.take();
   has_news_ = true;
 }
 
-Nanoseconds WindlogPlayer::usual_interval() const {
+Nanoseconds Player::usual_interval() const {
   return std::max(wait_of(seconds(playing_.cursor.interval()) / rate_), Nanoseconds{std::chrono::microseconds(1)});
 }
 
-Nanoseconds WindlogPlayer::hold_interval() const {
+Nanoseconds Player::hold_interval() const {
   return std::max(usual_interval(), kMinHoldInterval);
 }
 
-Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {
+Nanoseconds Player::place_of_day(const Instant& now) {
   const Nanoseconds wanted = time_of_day(now.utc, options_.offset_here);
   const auto sessions = playing_.cursor.reader().sessions();
   const auto place = find_time_of_day(sessions, begin_, wanted, options_.recorded_offset);
@@ -319,29 +319,29 @@ Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {
 // ---- orders ----
 
 /// Anchors both playheads where they are now: the rate is about to change.
-void WindlogPlayer::settle(MonoTime now) {
+void Player::settle(MonoTime now) {
   for (Playhead* playhead : {&playing_, &leaving_}) {
     if (!is_paused_) playhead->anchor_log = playhead->place(now, rate_);
     playhead->anchor = now;
   }
 }
 
-void WindlogPlayer::pause(const Instant& now) {
+void Player::pause(const Instant& now) {
   settle(now.mono);
   is_paused_ = true;
 }
 
-void WindlogPlayer::resume(const Instant& now) {
+void Player::resume(const Instant& now) {
   settle(now.mono);
   is_paused_ = false;
 }
 
-void WindlogPlayer::set_rate(const Instant& now, double rate) {
+void Player::set_rate(const Instant& now, double rate) {
   settle(now.mono);
   rate_ = rate;
 }
 
-Result<void, Failure> WindlogPlayer::step(const Instant& now, std::uint64_t count) {
+Result<void, Failure> Player::step(const Instant& now, std::uint64_t count) {
   if (is_finished_) return Failure{"is at its end; seek to another place first", FailureKind::kUsage};
   if (count > kMaxSteps) {
     return Failure{"can move at most " + std::to_string(kMaxSteps) + " readings; use seek to move further",
@@ -360,7 +360,7 @@ Result<void, Failure> WindlogPlayer::step(const Instant& now, std::uint64_t coun
   return {};
 }
 
-Result<void, Failure> WindlogPlayer::seek(const Instant& now, std::string_view place) {
+Result<void, Failure> Player::seek(const Instant& now, std::string_view place) {
   Nanoseconds target{0};
   if (const auto by_s = parse_relative(place)) {
     target = std::max(Nanoseconds{0}, position(now.mono).log_time + wait_of(*by_s));
@@ -383,7 +383,7 @@ Result<void, Failure> WindlogPlayer::seek(const Instant& now, std::string_view p
   return {};
 }
 
-PlayerPosition WindlogPlayer::position(MonoTime now) const {
+PlayerPosition Player::position(MonoTime now) const {
   const Nanoseconds last = playing_.cursor.last();
   Nanoseconds place = is_paused_ ? playing_.anchor_log : playing_.place(now, rate_);
   const Nanoseconds held_for =

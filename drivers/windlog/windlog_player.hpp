@@ -56,9 +56,9 @@ struct PlayerPosition {
 ///
 /// A Failure has the reason why the file cannot be read, or does not contain what is requested; an order that fails
 /// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
-class WindlogPlayer {
+class Player {
  public:
-  using Use = std::function<void(const wind::WindReading&)>;
+  using Use = std::function<void(const wind::Reading&)>;
 
   /// The most readings that one play() gives, at any rate.
   static constexpr int kMaxReadingsPerPlay = 4096;
@@ -66,8 +66,8 @@ class WindlogPlayer {
 
   /// Opens the recording; `now` is when its first moment is due, or the beginning of `lead_s`. `stop`: a request of it
   /// ends any call, however large the recording is, within milliseconds with a failure.
-  static Result<WindlogPlayer, Failure> open(const std::filesystem::path& file, PlayerOptions options,
-                                             const Instant& now, const std::stop_token& stop = {});
+  static Result<Player, Failure> open(const std::filesystem::path& file, PlayerOptions options, const Instant& now,
+                                      const std::stop_token& stop = {});
 
   /// Passes on the readings that are due by now, oldest first; returns when the next one is due. `now` must not go
   /// back. After a halt of more than a second it continues from where it was, and does not play what it missed.
@@ -90,9 +90,9 @@ class WindlogPlayer {
  private:
   /// One place of the recording that is played. During a jump there are two.
   struct Playhead {
-    WindlogCursor cursor;
+    Cursor cursor;
     std::optional<LoggedReading> upcoming = {};
-    std::optional<wind::WindReading> current = {};
+    std::optional<wind::Reading> current = {};
     MonoTime anchor{};  ///< when `anchor_log` is, or was, due
     Nanoseconds anchor_log{0};
     Nanoseconds last_log{0};  ///< of `current`, or where it began
@@ -105,7 +105,7 @@ class WindlogPlayer {
     void leave_out_days(bool only_between_sessions);
   };
 
-  WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin);
+  Player(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin);
   Result<void, Failure> fetch();
   Result<bool, Failure> look_ahead(const Instant& now);
   bool is_before_first_reading(MonoTime now) const;
@@ -116,8 +116,8 @@ class WindlogPlayer {
   void settle(MonoTime now);
   Result<MonoTime, Failure> hold(const Instant& now, const Use& use);
   void publish(MonoTime time, const Instant& now, const Use& use);
-  void give(wind::WindReading reading, MonoTime time, const Instant& now, const Use& use);
-  wind::WindReading blended(MonoTime time);
+  void give(wind::Reading reading, MonoTime time, const Instant& now, const Use& use);
+  wind::Reading blended(MonoTime time);
   void follow_leaving(MonoTime time);
   void take_while_paused();
   Nanoseconds fade_duration() const;
@@ -137,11 +137,11 @@ class WindlogPlayer {
   std::optional<Nanoseconds> led_to_;  ///< the place to which a lead-in goes, until a jump
   MonoTime fade_begin_{};
   Nanoseconds fade_{0};
-  std::optional<wind::WindReading> last_out_;
+  std::optional<wind::Reading> last_out_;
 };
 
 /// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors if both have a direction,
 /// else by speed. Everything else is of `to`.
-wind::WindReading between(const wind::WindReading& from, const wind::WindReading& to, double part);
+wind::Reading between(const wind::Reading& from, const wind::Reading& to, double part);
 
 }  // namespace yuragi::drivers::windlog

@@ -8,7 +8,7 @@
 
 namespace yuragi::drivers::windlog {
 
-Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file, const std::stop_token& stop) {
+Result<Reader, Failure> Reader::open(const std::filesystem::path& file, const std::stop_token& stop) {
   constexpr int kMaxLooks = 3;
   for (int tries = 1;; ++tries) {
     const auto files = recording_files(file);
@@ -18,10 +18,9 @@ Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& 
   }
 }
 
-Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file,
-                                                   const std::vector<std::filesystem::path>& files,
-                                                   const std::stop_token& stop) {
-  WindlogReader reader(file);
+Result<Reader, Failure> Reader::open(const std::filesystem::path& file, const std::vector<std::filesystem::path>& files,
+                                     const std::stop_token& stop) {
+  Reader reader(file);
   if (files.empty() || files == std::vector{file}) {
     auto opened = open_stored_file(file, stop);
     if (!opened) return opened.error();
@@ -38,7 +37,7 @@ Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& 
   return reader;
 }
 
-Result<void, Failure> WindlogReader::choose(const std::vector<bool>& of_sensors) {
+Result<void, Failure> Reader::choose(const std::vector<bool>& of_sensors) {
   auto blocks = stored_->blocks(of_sensors);
   if (!blocks) return blocks.error();
   readings_.emplace(database_.get(), std::move(*blocks));
@@ -46,12 +45,12 @@ Result<void, Failure> WindlogReader::choose(const std::vector<bool>& of_sensors)
   return {};
 }
 
-Result<std::optional<LoggedReading>, Failure> WindlogReader::next() {
+Result<std::optional<LoggedReading>, Failure> Reader::next() {
   if (sessions().empty()) return std::optional<LoggedReading>{};
   return readings_->next();
 }
 
-Result<void, Failure> WindlogReader::copy_to(const std::filesystem::path& copy) {
+Result<void, Failure> Reader::copy_to(const std::filesystem::path& copy) {
   if (!database_) {
     return Failure{file_.string() + ": is a series of files, which can be copied as they are: `cp " +
                        (file_.parent_path() / file_.stem()).string() + "*" + file_.extension().string() + " FOLDER`",

@@ -32,10 +32,10 @@ namespace yuragi::drivers::windlog {
 /// process left with FILE-wal beside it; SQLite then creates FILE-shm, which needs a folder that can be written to.
 /// Where nothing can be created it reads files that were properly closed, and refuses others with the reason. Owns the
 /// open file; holds no lock between calls. Thread-safe: no. Realtime-safe: no.
-class WindlogReader {
+class Reader {
  public:
   /// `stop`: a request of it ends this call, and later ones, within milliseconds with a failure.
-  static Result<WindlogReader, Failure> open(const std::filesystem::path& file, const std::stop_token& stop = {});
+  static Result<Reader, Failure> open(const std::filesystem::path& file, const std::stop_token& stop = {});
 
   const std::filesystem::path& file() const { return file_; }
   /// Those with readings, in order; as of open().
@@ -86,10 +86,9 @@ class WindlogReader {
   std::size_t skipped() const { return readings_->skipped(); }
 
  private:
-  explicit WindlogReader(std::filesystem::path file) : file_(std::move(file)) {}
-  static Result<WindlogReader, Failure> open(const std::filesystem::path& file,
-                                             const std::vector<std::filesystem::path>& files,
-                                             const std::stop_token& stop);
+  explicit Reader(std::filesystem::path file) : file_(std::move(file)) {}
+  static Result<Reader, Failure> open(const std::filesystem::path& file,
+                                      const std::vector<std::filesystem::path>& files, const std::stop_token& stop);
 
   std::filesystem::path file_;
   std::unique_ptr<sqlite::Database> database_;  ///< none for a series of files; what follows refers to it

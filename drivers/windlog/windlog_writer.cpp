@@ -64,17 +64,17 @@ Failure no_room(const sqlite::Database& database) {
 
 }  // namespace
 
-bool is_recordable(const wind::WindReading& reading) noexcept {
+bool is_recordable(const wind::Reading& reading) noexcept {
   const std::int64_t utc_ns = nanoseconds(reading.time.utc);
   const std::int64_t mono_ns = nanoseconds(reading.time.mono);
   return wind::is_plausible(reading) && mono_ns >= 0 && mono_ns <= kMaxTime_ns && utc_ns >= -kMaxTime_ns &&
          utc_ns <= kMaxTime_ns;
 }
 
-Result<WindlogWriter, Failure> WindlogWriter::open(const std::filesystem::path& file) {
+Result<Writer, Failure> Writer::open(const std::filesystem::path& file) {
   auto database = sqlite::Database::open(file, sqlite::Access::kReadWrite);
   if (!database) return database.error();
-  WindlogWriter writer(std::move(*database));
+  Writer writer(std::move(*database));
   if (const auto done = writer.prepare_file(); !done) {
     writer.release();
     return done.error();
@@ -82,7 +82,7 @@ Result<WindlogWriter, Failure> WindlogWriter::open(const std::filesystem::path& 
   return writer;
 }
 
-Result<void, Failure> WindlogWriter::prepare_file() {
+Result<void, Failure> Writer::prepare_file() {
   database_.set_busy_timeout(sqlite::kBusyTimeout_ms);
 
   // Nothing is written before the file is known to be ours.
@@ -117,11 +117,11 @@ Result<void, Failure> WindlogWriter::prepare_file() {
   return {};
 }
 
-WindlogWriter::~WindlogWriter() {
+Writer::~Writer() {
   if (database_.is_open()) static_cast<void>(close());
 }
 
-Result<void, Failure> WindlogWriter::begin_session(const WindlogSession& session) {
+Result<void, Failure> Writer::begin_session(const Session& session) {
   if (auto done = write_counts(); !done) return done;
   insert_reading_.clear();
   const auto begin_ns = begin_of_next_session(session.started.utc);
@@ -139,7 +139,7 @@ Result<void, Failure> WindlogWriter::begin_session(const WindlogSession& session
   return {};
 }
 
-Result<void, Failure> WindlogWriter::set_previous_part(UtcTime begin) {
+Result<void, Failure> Writer::set_previous_part(UtcTime begin) {
   if (auto begun = begin_transaction(); !begun) return begun;
   const std::string table(kPreviousPartTable);
   const std::string statements = "CREATE TABLE IF NOT EXISTS " + table + " " + std::string(kPreviousPartColumns) +
@@ -148,7 +148,7 @@ Result<void, Failure> WindlogWriter::set_previous_part(UtcTime begin) {
 }
 
 /// Stores what the session that ends wrote; in the transaction of its last readings, or in one of its own.
-Result<void, Failure> WindlogWriter::write_counts() {
+Result<void, Failure> Writer::write_counts() {
   const auto counts = std::exchange(counts_, std::nullopt);
   if (!counts || counts->empty()) return {};
   if (auto begun = begin_transaction(); !begun) return begun;
@@ -168,7 +168,7 @@ Result<void, Failure> WindlogWriter::write_counts() {
 }
 
 /// Where the last reading or the last beginning of a session is; nullopt if there is no session.
-Result<std::optional<WindlogWriter::Place>, Failure> WindlogWriter::last_place() {
+Result<std::optional<Writer::Place>, Failure> Writer::last_place() {
   const auto sessions = database_.integer("SELECT count(*) FROM session");
   if (!sessions) return sessions.error();
   if (*sessions == 0) return std::optional<Place>{};
@@ -196,7 +196,7 @@ Result<std::optional<WindlogWriter::Place>, Failure> WindlogWriter::last_place()
   return std::optional(Place{time_ns, UtcTime(Nanoseconds(utc_ns))});
 }
 
-Result<std::optional<UtcTime>, Failure> WindlogWriter::last_time() {
+Result<std::optional<UtcTime>, Failure> Writer::last_time() {
   const auto last = last_place();
   if (!last) return last.error();
   return *last ? std::optional((*last)->utc) : std::nullopt;
@@ -204,7 +204,7 @@ Result<std::optional<UtcTime>, Failure> WindlogWriter::last_time() {
 
 /// Where a session begins on the recording's time line: after all that is there, by the UTC gap to the last reading or
 /// the last beginning.
-Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime started) {
+Result<std::int64_t, Failure> Writer::begin_of_next_session(UtcTime started) {
   const auto last = last_place();
   if (!last) return last.error();
   if (!*last) return 0;
@@ -225,7 +225,7 @@ Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime start
 
 /// Returns the place of the last quantities on the recording's time line; nullopt if there are none, or their table is
 /// damaged.
-std::optional<std::int64_t> WindlogWriter::last_quantities_ns() {
+std::optional<std::int64_t> Writer::last_quantities_ns() {
   const std::string table(kQuantityTable);
   auto last = database_.prepare("SELECT time_ns FROM " + table + " WHERE typeof(time_ns) = 'integer' AND time_ns < " +
                                 std::to_string(kMaxTime_ns) + " ORDER BY time_ns DESC LIMIT 1");
@@ -233,8 +233,8 @@ std::optional<std::int64_t> WindlogWriter::last_quantities_ns() {
   return last->integer(0);
 }
 
-Result<std::int64_t, Failure> WindlogWriter::add_sensor(std::string_view name, std::string_view driver,
-                                                        std::string_view options) {
+Result<std::int64_t, Failure> Writer::add_sensor(std::string_view name, std::string_view driver,
+                                                 std::string_view options) {
   const auto series = series_named(name);
   if (!series) return series.error();
   insert_sensor_.bind(1, session_);
@@ -248,7 +248,7 @@ Result<std::int64_t, Failure> WindlogWriter::add_sensor(std::string_view name, s
 }
 
 /// The series of that name, which is made if there is none.
-Result<std::int64_t, Failure> WindlogWriter::series_named(std::string_view name) {
+Result<std::int64_t, Failure> Writer::series_named(std::string_view name) {
   auto find = database_.prepare("SELECT id FROM series WHERE name = ?1");
   if (!find) return undo().error();
   find->bind(1, name);
@@ -272,14 +272,14 @@ Result<std::int64_t, Failure> WindlogWriter::series_named(std::string_view name)
   return series;
 }
 
-Result<void, Failure> WindlogWriter::make_series(std::int64_t series) {
+Result<void, Failure> Writer::make_series(std::int64_t series) {
   const std::string create = "CREATE TABLE reading_" + std::to_string(series) + " " + std::string(kSeriesColumns);
   if (!database_.run(create.c_str())) return undo();
   if (!database_.run(view_of(series).c_str())) return undo();
   return {};
 }
 
-Result<void, Failure> WindlogWriter::prepare_insert(std::int64_t sensor, std::int64_t series) {
+Result<void, Failure> Writer::prepare_insert(std::int64_t sensor, std::int64_t series) {
   // Of two at one nanosecond the later one is moved to the next that is free.
   const std::string table = "reading_" + std::to_string(series);
   auto insert = database_.prepare("INSERT INTO " + table +
@@ -290,7 +290,7 @@ Result<void, Failure> WindlogWriter::prepare_insert(std::int64_t sensor, std::in
   return {};
 }
 
-Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::WindReading& reading) {
+Result<void, Failure> Writer::append(std::int64_t sensor, const wind::Reading& reading) {
   const auto insert = insert_reading_.find(sensor);
   if (insert == insert_reading_.end() || !is_recordable(reading)) {
     return Failure{database_.file().string() + ": this reading has impossible values and cannot be recorded"};
@@ -318,17 +318,17 @@ Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Win
   }
   into.last_since_ns = std::max(into.last_since_ns, since_ns);
   if (counts_) {
-    wind::WindReading stored = reading;
+    wind::Reading stored = reading;
     stored.time.mono = started_.mono + Nanoseconds(since_ns);
     (*counts_)[into.series].add(stored);
   }
   return {};
 }
 
-Result<bool, Failure> WindlogWriter::append(std::int64_t sensor, const wind::StationQuantities& quantities) {
+Result<bool, Failure> Writer::append(std::int64_t sensor, const wind::StationQuantities& quantities) {
   const auto reading = insert_reading_.find(sensor);
   const auto plausible = wind::plausible_part(quantities);
-  wind::WindReading at_that_time;
+  wind::Reading at_that_time;
   at_that_time.time = quantities.time;
   if (reading == insert_reading_.end() || !plausible || !is_recordable(at_that_time)) return false;
 
@@ -368,7 +368,7 @@ Result<bool, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Sta
 }
 
 /// Returns false if the file has something else of that name.
-bool WindlogWriter::prepare_quantities() {
+bool Writer::prepare_quantities() {
   if (insert_quantities_) return true;
   std::string create = "CREATE TABLE IF NOT EXISTS " + std::string(kQuantityTable) + " " + std::string(kQuantityKeys);
   std::string columns;
@@ -393,7 +393,7 @@ bool WindlogWriter::prepare_quantities() {
   return true;
 }
 
-Result<std::optional<UtcTime>, Failure> WindlogWriter::began() {
+Result<std::optional<UtcTime>, Failure> Writer::began() {
   const auto series = database_.integer("SELECT count(*) FROM series");
   if (!series) return series.error();
   std::int64_t has_readings = 0;
@@ -408,17 +408,17 @@ Result<std::optional<UtcTime>, Failure> WindlogWriter::began() {
   return std::optional(UtcTime(Nanoseconds(*utc_ns)));
 }
 
-Result<void, Failure> WindlogWriter::commit() {
+Result<void, Failure> Writer::commit() {
   if (!database_.in_transaction()) return {};
   if (!database_.run("COMMIT")) return undo();
   return {};
 }
 
-Result<void, Failure> WindlogWriter::checkpoint() {
+Result<void, Failure> Writer::checkpoint() {
   return database_.run("PRAGMA wal_checkpoint(PASSIVE)");
 }
 
-Result<void, Failure> WindlogWriter::close() {
+Result<void, Failure> Writer::close() {
   const auto committed = commit();
   // Without its counts the recording is complete all the same.
   if (committed && write_counts()) static_cast<void>(commit());
@@ -432,7 +432,7 @@ Result<void, Failure> WindlogWriter::close() {
   return committed && !is_read_by_others ? tidied : committed;
 }
 
-void WindlogWriter::release() {
+void Writer::release() {
   insert_session_ = {};
   insert_sensor_ = {};
   insert_reading_.clear();
@@ -440,13 +440,13 @@ void WindlogWriter::release() {
   database_.close();
 }
 
-Result<void, Failure> WindlogWriter::begin_transaction() {
+Result<void, Failure> Writer::begin_transaction() {
   if (database_.in_transaction()) return {};
   return database_.run("BEGIN IMMEDIATE");
 }
 
 /// Runs an INSERT, in a transaction.
-Result<void, Failure> WindlogWriter::write(sqlite::Statement& statement) {
+Result<void, Failure> Writer::write(sqlite::Statement& statement) {
   if (auto begun = begin_transaction(); !begun) return begun;
   if (statement.step() != sqlite::Statement::Step::kDone) {
     auto undone = undo();
@@ -458,14 +458,14 @@ Result<void, Failure> WindlogWriter::write(sqlite::Statement& statement) {
 }
 
 /// Rolls back to the last commit; returns the failure that led to it.
-Result<void, Failure> WindlogWriter::undo() {
+Result<void, Failure> Writer::undo() {
   Failure failure = database_.failure();
   insert_quantities_.reset();  // their table may be taken back, too
   roll_back();
   return failure;
 }
 
-void WindlogWriter::roll_back() {
+void Writer::roll_back() {
   counts_.reset();
   // SQLite rolls back by itself after some errors.
   if (database_.in_transaction()) static_cast<void>(database_.run("ROLLBACK"));

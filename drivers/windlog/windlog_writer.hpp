@@ -16,7 +16,7 @@
 namespace yuragi::drivers::windlog {
 
 /// What made a session of a recording.
-struct WindlogSession {
+struct Session {
   Instant started;
   std::string_view software;       ///< name and version
   std::string_view configuration;  ///< TOML, as read
@@ -28,20 +28,20 @@ struct WindlogSession {
 /// A call that fails undoes everything since the last commit; its text names the file and what to do; the writer can be
 /// used on (a full disk that has room again), or destroyed and opened again. Owns the open file. Thread-safe: no; one
 /// thread. Realtime-safe: no; commit() waits for the disk.
-class WindlogWriter {
+class Writer {
  public:
   /// Opens a recording to append to, or creates it. Refuses a file that is something else, and one of another version
   /// of the format (format.hpp), without changing it.
-  static Result<WindlogWriter, Failure> open(const std::filesystem::path& file);
+  static Result<Writer, Failure> open(const std::filesystem::path& file);
 
-  WindlogWriter(WindlogWriter&&) noexcept = default;
-  WindlogWriter& operator=(WindlogWriter&&) = delete;
+  Writer(Writer&&) noexcept = default;
+  Writer& operator=(Writer&&) = delete;
   /// Closes, if close() was not called, without reporting errors.
-  ~WindlogWriter();
+  ~Writer();
 
   /// Begins a session, to which the sensors and readings that follow belong; `started` must not be later than any of
   /// them.
-  Result<void, Failure> begin_session(const WindlogSession& session);
+  Result<void, Failure> begin_session(const Session& session);
 
   /// Notes which completed file was before this one in its series, by the moment in its name. Once for each file.
   Result<void, Failure> set_previous_part(UtcTime begin);
@@ -53,7 +53,7 @@ class WindlogWriter {
   /// Adds a reading. One that is not plausible, or whose time cannot be, is a failure of the caller's and undoes
   /// nothing. One that is earlier than its session is given the session's begin; one that has the time of another of
   /// its sensor's is moved to a nanosecond that is free.
-  Result<void, Failure> append(std::int64_t sensor, const wind::WindReading& reading);
+  Result<void, Failure> append(std::int64_t sensor, const wind::Reading& reading);
 
   /// Adds the other quantities of a sensor's station, as far as they are plausible: one row a second (format.hpp).
   /// Returns false, with nothing undone, if they cannot be added: none is plausible, the time is impossible, there is
@@ -96,7 +96,7 @@ class WindlogWriter {
     UtcTime utc;
   };
 
-  explicit WindlogWriter(sqlite::Database database) : database_(std::move(database)) {}
+  explicit Writer(sqlite::Database database) : database_(std::move(database)) {}
 
   Result<void, Failure> prepare_file();
   Result<std::optional<Place>, Failure> last_place();
@@ -127,6 +127,6 @@ class WindlogWriter {
 };
 
 /// Can this reading be recorded?
-bool is_recordable(const wind::WindReading& reading) noexcept;
+bool is_recordable(const wind::Reading& reading) noexcept;
 
 }  // namespace yuragi::drivers::windlog

@@ -21,7 +21,7 @@ double passed(double k, double end) noexcept {
   return octave * octave * (3.0 - 2.0 * octave);
 }
 
-NoiseTile2 without_waves_from(double end, const NoiseTile2& base, fft::RealFft& fft) {
+Tile2 without_waves_from(double end, const Tile2& base, fft::RealFft& fft) {
   for (std::size_t i = 0; i < base.values.size(); ++i) fft.samples()[i] = static_cast<double>(base.values[i]);
   fft.forward();
   const std::size_t columns = fft.row_modes();
@@ -39,7 +39,7 @@ NoiseTile2 without_waves_from(double end, const NoiseTile2& base, fft::RealFft& 
 
 }  // namespace
 
-BandLimitedTile2::BandLimitedTile2(NoiseTile2 base, std::size_t levels) {
+BandLimitedTile2::BandLimitedTile2(Tile2 base, std::size_t levels) {
   if (!is_readable(base)) throw std::invalid_argument("a band-limited noise needs a readable tile");
   if (levels < 1 || levels > kMaxLevels) throw std::invalid_argument("a band-limited noise must have 1 to 8 levels");
   levels_.reserve(levels);

@@ -28,11 +28,11 @@ struct BandPick {
 class BandLimitedTile2 {
  public:
   /// Throws std::invalid_argument if the tile is not readable, or for 0 levels or more than kMaxLevels; std::bad_alloc.
-  explicit BandLimitedTile2(NoiseTile2 base, std::size_t levels = 4);
+  explicit BandLimitedTile2(Tile2 base, std::size_t levels = 4);
   static constexpr std::size_t kMaxLevels = 8;
 
   std::size_t level_count() const noexcept { return levels_.size(); }
-  const NoiseTile2& level(std::size_t index) const noexcept { return levels_[index]; }
+  const Tile2& level(std::size_t index) const noexcept { return levels_[index]; }
 
   /// This level has no wave of more cycles an edge.
   double end_cycles(std::size_t index) const noexcept;
@@ -43,7 +43,7 @@ class BandLimitedTile2 {
   BandPick pick(double speed_m_s, double rate_hz, double period_m) const noexcept;
 
  private:
-  std::vector<NoiseTile2> levels_;
+  std::vector<Tile2> levels_;
 };
 
 /// The noise at a place, as read_noise() of the two levels mixed. Thread-safe and realtime-safe: yes.

@@ -64,7 +64,7 @@ SharedVariance shared_variance(int dims, std::size_t size, const WavePower& one,
 
 MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField> fields) : fft_(dims, size) {
   if (dims != 2 && dims != 3) throw std::invalid_argument("a moving noise must have two or three dimensions");
-  if (check_noise(dims, {.size = size})) throw std::invalid_argument(std::string(explain(NoiseError::kSizeNotAllowed)));
+  if (check_noise(dims, {.size = size})) throw std::invalid_argument(std::string(explain(Error::kSizeNotAllowed)));
   if (fields.empty()) throw std::invalid_argument("a moving noise must have at least one field");
 
   // All fields turn alike: their modes are independent of each other all the same.

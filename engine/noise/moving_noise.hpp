@@ -58,7 +58,7 @@ class MovingNoise {
   /// as long as an edge.
   void move_to(std::array<double, 3> carried, double turn_rad) noexcept;
 
-  /// The samples of a field, as a NoiseTile2 or NoiseTile3 lays them out. move_to() changes them.
+  /// The samples of a field, as a Tile2 or Tile3 lays them out. move_to() changes them.
   std::span<const float> samples(std::size_t field) const noexcept { return fields_[field].samples; }
 
   /// The noise at a place in periods along x, z and y (finite), linear between samples. In two dimensions y is nothing.

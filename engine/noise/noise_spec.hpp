@@ -20,7 +20,7 @@ enum class BetaMeaning : std::uint8_t {
 inline constexpr std::array<std::string_view, 2> kBetaMeaningNames = {"transect", "radial"};
 
 /// Which noise is wanted. Everything but the size has a default; later members will have one as well.
-struct NoiseSpec {
+struct Spec {
   std::size_t size = 0;     ///< samples an edge: a power of two, 8 to kMaxNoiseSize1, 2 or 3 (for the dimensions)
   double beta = 5.0 / 3.0;  ///< 0 (white) to 8, see kMinTransectBeta2; 5/3 is turbulent wind (Kolmogorov 1941; Simiu)
   BetaMeaning meaning = BetaMeaning::kTransect;
@@ -48,7 +48,7 @@ inline constexpr double kMinTransectBeta3 = 1.0;
 inline constexpr double kMinNoiseIntegralScale = 1e-6;  ///< besides 0
 
 /// Why there is no noise.
-enum class NoiseError : std::uint8_t {
+enum class Error : std::uint8_t {
   kSizeNotAllowed,
   kBetaOutOfRange,
   kTransectTooFlat,  ///< beta is below kMinTransectBeta2 or kMinTransectBeta3
@@ -56,12 +56,12 @@ enum class NoiseError : std::uint8_t {
   kBandOutOfRange,
 };
 
-std::string_view name_of(NoiseError error) noexcept;
+std::string_view name_of(Error error) noexcept;
 
 /// One sentence for people: what is allowed.
-std::string_view explain(NoiseError error) noexcept;
+std::string_view explain(Error error) noexcept;
 
-[[noreturn]] inline void throw_exception_from_error(NoiseError error, const boost::source_location&) {
+[[noreturn]] inline void throw_exception_from_error(Error error, const boost::source_location&) {
   throw std::invalid_argument(std::string(explain(error)));
 }
 

@@ -43,23 +43,23 @@ math::RandomStream noise_stream(int dims, std::uint64_t seed) noexcept {
   return {seed, kStreams[static_cast<std::size_t>(dims - 1)]};
 }
 
-std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept {
+std::optional<Error> check_noise(int dims, const Spec& spec) noexcept {
   constexpr std::array kMaxSizes = {kMaxNoiseSize1, kMaxNoiseSize2, kMaxNoiseSize3};
   const std::size_t max_size = kMaxSizes[static_cast<std::size_t>(dims - 1)];
   if (spec.size < kMinNoiseSize || spec.size > max_size || !std::has_single_bit(spec.size)) {
-    return NoiseError::kSizeNotAllowed;
+    return Error::kSizeNotAllowed;
   }
-  if (!(spec.beta >= 0.0 && spec.beta <= kMaxNoiseBeta)) return NoiseError::kBetaOutOfRange;
+  if (!(spec.beta >= 0.0 && spec.beta <= kMaxNoiseBeta)) return Error::kBetaOutOfRange;
   constexpr std::array kMinTransectBetas = {0.0, kMinTransectBeta2, kMinTransectBeta3};
   if (spec.meaning == BetaMeaning::kTransect && spec.beta < kMinTransectBetas[static_cast<std::size_t>(dims - 1)]) {
-    return NoiseError::kTransectTooFlat;
+    return Error::kTransectTooFlat;
   }
   if (spec.integral_scale != 0.0 && !(spec.integral_scale >= kMinNoiseIntegralScale)) {
-    return NoiseError::kIntegralScaleOutOfRange;
+    return Error::kIntegralScaleOutOfRange;
   }
   const bool has_waves = spec.from_cycles >= 0.0 && spec.from_cycles <= static_cast<double>(spec.size) / 2.0 &&
                          spec.to_cycles >= 2.0 * spec.from_cycles && spec.to_cycles > 1.0;
-  if (!has_waves) return NoiseError::kBandOutOfRange;
+  if (!has_waves) return Error::kBandOutOfRange;
   return std::nullopt;
 }
 
@@ -106,7 +106,7 @@ void fill_modes(fft::RealFft& fft, std::uint64_t seed,
   }
 }
 
-void fill_spectrum(fft::RealFft& fft, const NoiseSpec& spec) {
+void fill_spectrum(fft::RealFft& fft, const Spec& spec) {
   const double exponent = mode_exponent(fft.dims(), spec.beta, spec.meaning);
   const double corner = spec.integral_scale > 0.0 ? corner_cycles(spec.integral_scale) : 0.0;
   fill_modes(fft, spec.seed, [&](std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) {

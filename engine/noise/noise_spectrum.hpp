@@ -22,10 +22,10 @@ namespace yuragi::noise {
 math::RandomStream noise_stream(int dims, std::uint64_t seed) noexcept;
 
 /// What is wrong with a spec of so many dimensions.
-std::optional<NoiseError> check_noise(int dims, const NoiseSpec& spec) noexcept;
+std::optional<Error> check_noise(int dims, const Spec& spec) noexcept;
 
 /// Fills the half spectrum of a transform of 1 to 3 dimensions with the random modes of a checked spec, Hermitian.
-void fill_spectrum(fft::RealFft& fft, const NoiseSpec& spec);
+void fill_spectrum(fft::RealFft& fft, const Spec& spec);
 
 /// The same for modes of any amplitude: `amplitude(wave_x, wave_z, wave_y)` is the standard deviation of a mode's real
 /// part, and of its imaginary part. It is evaluated once for each mode that is drawn.

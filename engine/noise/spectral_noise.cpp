@@ -6,7 +6,7 @@ namespace yuragi::noise {
 namespace {
 
 /// The values of a checked spec.
-std::vector<float> synthesise(int dims, const NoiseSpec& spec) {
+std::vector<float> synthesise(int dims, const Spec& spec) {
   fft::RealFft fft(dims, spec.size);
   fill_spectrum(fft, spec);
   fft.inverse();
@@ -15,19 +15,19 @@ std::vector<float> synthesise(int dims, const NoiseSpec& spec) {
 
 }  // namespace
 
-Result<NoiseTile1, NoiseError> make_noise_1d(const NoiseSpec& spec) {
+Result<Tile1, Error> make_noise_1d(const Spec& spec) {
   if (const auto error = check_noise(1, spec)) return *error;
-  return NoiseTile1{synthesise(1, spec)};
+  return Tile1{synthesise(1, spec)};
 }
 
-Result<NoiseTile2, NoiseError> make_noise_2d(const NoiseSpec& spec) {
+Result<Tile2, Error> make_noise_2d(const Spec& spec) {
   if (const auto error = check_noise(2, spec)) return *error;
-  return NoiseTile2{spec.size, synthesise(2, spec)};
+  return Tile2{spec.size, synthesise(2, spec)};
 }
 
-Result<NoiseTile3, NoiseError> make_noise_3d(const NoiseSpec& spec) {
+Result<Tile3, Error> make_noise_3d(const Spec& spec) {
   if (const auto error = check_noise(3, spec)) return *error;
-  return NoiseTile3{spec.size, synthesise(3, spec)};
+  return Tile3{spec.size, synthesise(3, spec)};
 }
 
 }  // namespace yuragi::noise

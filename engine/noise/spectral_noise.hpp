@@ -18,12 +18,12 @@ namespace yuragi::noise {
 ///
 /// Deterministic: a mode's numbers come from the seed and its wave vector alone, so the same spec gives the same bits,
 /// and a larger tile of the same seed repeats the large waves of a smaller one (scaled to variance 1). Cost: set-up
-/// work, about 0.1 us a sample; allocates. Thread-safe: yes. Realtime-safe: no. Fails with a NoiseError, and
+/// work, about 0.1 us a sample; allocates. Thread-safe: yes. Realtime-safe: no. Fails with a Error, and
 /// throws std::bad_alloc. Source: Chiba, "Development of core technology for a noise-based
 /// real-time animation engine for fluctuation phenomena", section 2-1; von
 /// Karman 1948, "Progress in the statistical theory of turbulence".
-Result<NoiseTile1, NoiseError> make_noise_1d(const NoiseSpec& spec);
-Result<NoiseTile2, NoiseError> make_noise_2d(const NoiseSpec& spec);
-Result<NoiseTile3, NoiseError> make_noise_3d(const NoiseSpec& spec);
+Result<Tile1, Error> make_noise_1d(const Spec& spec);
+Result<Tile2, Error> make_noise_2d(const Spec& spec);
+Result<Tile3, Error> make_noise_3d(const Spec& spec);
 
 }  // namespace yuragi::noise

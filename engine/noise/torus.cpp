@@ -42,20 +42,20 @@ void TorusTravel::add(double distance_m, double period_m) noexcept {
   remainder_ = step - whole;
 }
 
-bool is_readable(const NoiseTile1& tile) noexcept {
+bool is_readable(const Tile1& tile) noexcept {
   return is_readable_size(tile.size());
 }
 
-bool is_readable(const NoiseTile2& tile) noexcept {
+bool is_readable(const Tile2& tile) noexcept {
   return is_readable_size(tile.size) && tile.values.size() == tile.size * tile.size;
 }
 
-float read_noise(const NoiseTile1& tile, std::uint32_t at) noexcept {
+float read_noise(const Tile1& tile, std::uint32_t at) noexcept {
   const TorusCell cell = torus_cell(at, log2_of(tile.size()));
   return between(tile.values[cell.first], tile.values[cell.second], cell.fraction);
 }
 
-float read_noise(const NoiseTile2& tile, TorusPhase at) noexcept {
+float read_noise(const Tile2& tile, TorusPhase at) noexcept {
   return read_bilinear(tile.values.data(), log2_of(tile.size), at.x, at.z);
 }
 

@@ -49,13 +49,13 @@ struct TorusOffset {
 };
 
 /// May this tile be read? Its size is a power of two, 2 to 2^16, and it has all its values.
-bool is_readable(const NoiseTile1& tile) noexcept;
-bool is_readable(const NoiseTile2& tile) noexcept;
+bool is_readable(const Tile1& tile) noexcept;
+bool is_readable(const Tile2& tile) noexcept;
 
 /// The noise at a place, linear (bilinear) between samples; sample (0, 0) is at phase 0, and the last is followed by
 /// the first. The tile is_readable(). Thread-safe and realtime-safe: yes. SampleJob (engine/operators) reads many
 /// places at once, to the same bits.
-float read_noise(const NoiseTile1& tile, std::uint32_t at) noexcept;
-float read_noise(const NoiseTile2& tile, TorusPhase at) noexcept;
+float read_noise(const Tile1& tile, std::uint32_t at) noexcept;
+float read_noise(const Tile2& tile, TorusPhase at) noexcept;
 
 }  // namespace yuragi::noise

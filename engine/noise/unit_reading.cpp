@@ -6,7 +6,7 @@
 
 namespace yuragi::noise {
 
-void scale_to_unit_reading(NoiseTile2& tile) {
+void scale_to_unit_reading(Tile2& tile) {
   double own = 0.0;
   double beside = 0.0;
   double across = 0.0;
@@ -26,7 +26,7 @@ void scale_to_unit_reading(NoiseTile2& tile) {
   for (float& value : tile.values) value *= scale;
 }
 
-void scale_to_unit_reading(NoiseTile1& tile) {
+void scale_to_unit_reading(Tile1& tile) {
   double squares = 0.0;
   for (std::size_t i = 0; i < tile.size(); ++i) {
     const auto here = static_cast<double>(tile.values[i]);

@@ -29,9 +29,9 @@ struct Whitening {
 
 }  // namespace
 
-Result<VectorNoise2, NoiseError> VectorNoiseMaker::make(const NoiseSpec& spec, bool turns) {
+Result<VectorNoise2, Error> VectorNoiseMaker::make(const Spec& spec, bool turns) {
   if (const auto error = check_noise(2, spec)) return *error;
-  if (spec.beta != kBeta || spec.meaning != BetaMeaning::kTransect) return NoiseError::kBetaOutOfRange;
+  if (spec.beta != kBeta || spec.meaning != BetaMeaning::kTransect) return Error::kBetaOutOfRange;
   fft::RealFft& fft = transforms_.try_emplace(spec.size, 2, spec.size).first->second;
   std::vector<Mode> modes = modes_of(fft, spec);
   VectorNoise2 noise{.first = tile_of(fft, modes), .quarter = {}};
@@ -46,9 +46,9 @@ Result<VectorNoise2, NoiseError> VectorNoiseMaker::make(const NoiseSpec& spec, b
   return noise;
 }
 
-std::vector<VectorNoiseMaker::Mode> VectorNoiseMaker::modes_of(fft::RealFft& fft, const NoiseSpec& spec) const {
+std::vector<VectorNoiseMaker::Mode> VectorNoiseMaker::modes_of(fft::RealFft& fft, const Spec& spec) const {
   const auto fill = [&](std::uint64_t stream) {
-    NoiseSpec scalar = spec;
+    Spec scalar = spec;
     scalar.seed ^= stream;
     fill_spectrum(fft, scalar);
   };

@@ -14,7 +14,7 @@ namespace yuragi::noise {
 
 /// A noise vector at each place of a square torus: its components along x and along z, equally large tiles.
 struct VectorTile2 {
-  NoiseTile2 x, z;
+  Tile2 x, z;
 };
 
 /// The horizontal wind on a plane through isotropic, incompressible turbulence: at each mode
@@ -42,14 +42,14 @@ class VectorNoiseMaker {
  public:
   /// `spec`: beta is 5/3 and its meaning kTransect; kappa is the integral scale's. Waves of two samples along an axis
   /// cannot have a curl, and are left out. Fails as make_noise_2d(), and with kBetaOutOfRange for another slope.
-  Result<VectorNoise2, NoiseError> make(const NoiseSpec& spec, bool turns);
+  Result<VectorNoise2, Error> make(const Spec& spec, bool turns);
 
  private:
   struct Mode {
     std::size_t index = 0;
     std::complex<double> x, z;
   };
-  std::vector<Mode> modes_of(fft::RealFft& fft, const NoiseSpec& spec) const;
+  std::vector<Mode> modes_of(fft::RealFft& fft, const Spec& spec) const;
   static VectorTile2 tile_of(fft::RealFft& fft, const std::vector<Mode>& modes);
 
   std::map<std::size_t, fft::RealFft> transforms_;  ///< by their size

@@ -13,7 +13,7 @@ namespace yuragi::operators {
 /// A shifted noise, and the grid of places at which it is read, whose axes are those of the tile: the phase of each
 /// column along x, and of each row along z. A field that has moved by `offset` is read at place - offset.
 struct GridNoiseLayer {
-  const noise::NoiseTile2* tile = nullptr;
+  const noise::Tile2* tile = nullptr;
   std::span<const std::uint32_t> column_x;
   std::span<const std::uint32_t> row_z;
   noise::TorusPhase offset = {};

@@ -15,7 +15,7 @@ namespace yuragi::operators {
 /// A shifted noise, and the places at which it is read: phases on the tile's torus. A field that has moved by `offset`
 /// is read at place - offset, so that gusts travel downwind.
 struct NoiseLayer {
-  const noise::NoiseTile2* tile = nullptr;
+  const noise::Tile2* tile = nullptr;
   std::span<const std::uint32_t> place_x;
   std::span<const std::uint32_t> place_z;
   noise::TorusPhase offset = {};

@@ -134,19 +134,19 @@ std::optional<ParameterError> mistake_of(const Screen& screen) {
 }
 
 /// An [[output]] as it is written.
-struct OutputKeys {
+struct Keys {
   std::optional<Size> size;
   int refreshes = 1;
   std::optional<RoomPlace> lower_left_m, lower_right_m, upper_left_m, eye_m;
 };
 
-const Fields<OutputKeys>& output_fields() {
-  static const Fields<OutputKeys> kFields{
+const Fields<Keys>& output_fields() {
+  static const Fields<Keys> kFields{
       {{.name = "size",
         .default_value = std::string(),
         .help = "Pixels of the whole picture, WIDTHxHEIGHT, of which each window shows its crop",
         .left_out = "the size of its windows, so that each pixel of the picture is one of a monitor"},
-       &OutputKeys::size,
+       &Keys::size,
        read_size},
       {{.name = "refreshes",
         .default_value = std::int64_t{1},
@@ -154,7 +154,7 @@ const Fields<OutputKeys>& output_fields() {
         .max = 4,
         .help = "Refreshes of the display for each picture: 2 gives an even 30 pictures a second on a display of 60 "
                 "Hz, for a machine that is too slow for 60"},
-       &OutputKeys::refreshes},
+       &Keys::refreshes},
       {{.name = "screen_lower_left",
         .default_value = std::string(),
         .help =
@@ -162,22 +162,22 @@ const Fields<OutputKeys>& output_fields() {
             "lower left corner, in meters, in any axes of the room. The camera stands where the eye is, and looks at "
             "right angles to the screen",
         .left_out = "the field of view is the camera's"},
-       &OutputKeys::lower_left_m,
+       &Keys::lower_left_m,
        read_place},
       {{.name = "screen_lower_right",
         .default_value = std::string(),
         .help = "X Y Z of its lower right corner",
         .left_out = "as above"},
-       &OutputKeys::lower_right_m,
+       &Keys::lower_right_m,
        read_place},
       {{.name = "screen_upper_left",
         .default_value = std::string(),
         .help = "X Y Z of its upper left corner",
         .left_out = "as above"},
-       &OutputKeys::upper_left_m,
+       &Keys::upper_left_m,
        read_place},
       {{.name = "eye", .default_value = std::string(), .help = "X Y Z of the eye", .left_out = "as above"},
-       &OutputKeys::eye_m,
+       &Keys::eye_m,
        read_place},
   };
   return kFields;
@@ -243,7 +243,7 @@ const Fields<Window>& window_fields() {
   return kFields;
 }
 
-Result<std::optional<Screen>, ParameterError> screen_of(const OutputKeys& keys) {
+Result<std::optional<Screen>, ParameterError> screen_of(const Keys& keys) {
   const std::array<std::pair<const char*, const std::optional<RoomPlace>*>, 4> places{
       {{"screen_lower_left", &keys.lower_left_m},
        {"screen_lower_right", &keys.lower_right_m},
@@ -275,7 +275,7 @@ std::span<const Parameter> window_parameters() {
 }
 
 Result<Output, ParameterError> output_of(std::string name, const ParameterValues& values) {
-  OutputKeys keys;
+  Keys keys;
   const std::vector<ParameterError> errors = output_fields().fill(keys, values.all());
   if (!errors.empty()) return errors.front();
   auto screen = screen_of(keys);

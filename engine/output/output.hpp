@@ -86,7 +86,7 @@ struct Output {
 };
 
 /// An [[output]] with its values by key, of output_parameters() and window_parameters().
-struct OutputTable {
+struct Table {
   ParameterValues values = {};
   std::vector<ParameterValues> windows = {};
   Output output = {};

@@ -20,10 +20,10 @@ Made taken(Result<Made, ParameterError> made, const toml::table& table, const st
   return {};
 }
 
-OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes) {
+Table read_output(const toml::table& entry, tables::TomlMistakes& mistakes) {
   const std::string prefix = std::string(kOutputList) + ".";
   std::string name = tables::read_name(entry, prefix, Output().name, mistakes);
-  OutputTable table;
+  Table table;
   table.values = tables::read_values(entry, prefix, output_parameters(), {kNameKey, kWindowList}, mistakes);
   table.output = taken(output_of(std::move(name), table.values), entry, prefix, mistakes);
 
@@ -45,12 +45,12 @@ OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes
 
 }  // namespace
 
-std::vector<OutputTable> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes) {
-  std::vector<OutputTable> outputs;
+std::vector<Table> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes) {
+  std::vector<Table> outputs;
   for (const toml::table* entry :
        tables::entries_of(root, kOutputList, std::string(kOutputList), kMaxOutputs, mistakes)) {
-    OutputTable read = read_output(*entry, mistakes);
-    const auto has_its_name = [&read](const OutputTable& other) { return other.output.name == read.output.name; };
+    Table read = read_output(*entry, mistakes);
+    const auto has_its_name = [&read](const Table& other) { return other.output.name == read.output.name; };
     if (std::ranges::any_of(outputs, has_its_name)) {
       const toml::node* const name = entry->get(kNameKey);
       mistakes.add(name != nullptr ? name->source() : entry->source(), "output.name",
@@ -66,7 +66,7 @@ Result<std::vector<Output>, Failure> parse_outputs(std::string_view toml_text, c
   std::vector<Output> outputs;
   try {
     const toml::table root = tables::parse_toml(toml_text, source_name);
-    for (OutputTable& table : read_outputs(root, mistakes)) outputs.push_back(std::move(table.output));
+    for (Table& table : read_outputs(root, mistakes)) outputs.push_back(std::move(table.output));
   } catch (const toml::parse_error& error) {
     mistakes.add(error.source(), "TOML", std::string(error.description()));
   }

@@ -14,7 +14,7 @@ inline constexpr std::string_view kOutputList = "output";
 inline constexpr std::string_view kWindowList = "window";
 
 /// Every [[output]] of a configuration. What is wrong goes to `mistakes`.
-std::vector<OutputTable> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes);
+std::vector<Table> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes);
 
 /// The outputs of a configuration's text; nothing else of it is looked at. Fails with every mistake, a line for each:
 /// `source_name:line:column: key: what is wrong; what is allowed`.

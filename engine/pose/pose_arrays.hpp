@@ -44,10 +44,10 @@ void for_each_array(AnyPose& pose, Visit&& visit) {
 
 /// The same arrays, in a list that is no longer than a tree's.
 template <class Float>
-class PoseArrays {
+class Arrays {
  public:
   template <class AnyPose>
-  explicit PoseArrays(AnyPose& pose) {
+  explicit Arrays(AnyPose& pose) {
     for_each_array(pose, [this](auto array) {
       if (count_ < arrays_.size()) arrays_[count_++] = array;
     });

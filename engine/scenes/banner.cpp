@@ -129,7 +129,7 @@ ClothSpec banner_spec(const BannerSettings& settings) {
 }
 
 /// The pole stands at the scene's origin, the cross-arm points to the scene's east.
-ClothEdge banner_edge(const BannerSettings& settings, const SceneSetup& setup) {
+ClothEdge banner_edge(const BannerSettings& settings, const Setup& setup) {
   ClothEdge edge(settings.columns);
   const double pitch_m = settings.width_m / static_cast<double>(edge.columns - 1);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
@@ -143,8 +143,7 @@ ClothEdge banner_edge(const BannerSettings& settings, const SceneSetup& setup) {
 
 class Banner final : public Scene {
  public:
-  Banner(const BannerSettings& settings, const SceneSetup& setup)
-      : Banner(banner_edge(settings, setup), settings, setup) {}
+  Banner(const BannerSettings& settings, const Setup& setup) : Banner(banner_edge(settings, setup), settings, setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const pose::Pose& pose() const noexcept override { return cloth_.pose(); }
@@ -159,7 +158,7 @@ class Banner final : public Scene {
                                        turns_ ? kFastestTurn_rad_s * dt_s : 0.0);
   }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     waves_.shift(std::min(wave_speed_ * wind_.speed_m_s(), kFastestBannerWave_m_s), dt_s);
@@ -207,7 +206,7 @@ class Banner final : public Scene {
     std::vector<float> ahead_m, aside_m;
   };
 
-  Banner(const ClothEdge& edge, const BannerSettings& settings, const SceneSetup& setup)
+  Banner(const ClothEdge& edge, const BannerSettings& settings, const Setup& setup)
       : width_m_(settings.width_m),
         turns_(settings.turns),
         belly_(settings.belly),
@@ -301,7 +300,7 @@ class Banner final : public Scene {
   double wave_speed_;  ///< over the wind's
   EastSouth arm_;      ///< where the cross-arm points to at rest
 
-  SceneWind wind_;
+  Wind wind_;
   ClothStrength strength_;
   Cloth cloth_;
   double knot_link_m_;
@@ -331,13 +330,13 @@ const std::array kRetiredBannerParameters = {
 
 }  // namespace
 
-extern const SceneDescription kBannerScene;
-const SceneDescription kBannerScene = {
+extern const Description kBannerScene;
+const Description kBannerScene = {
     .name = "banner",
     .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
     .parameters = kBannerFields.parameters(),
     .make =
-        [](const ParameterValues& values, const SceneSetup& setup) {
+        [](const ParameterValues& values, const Setup& setup) {
           return std::unique_ptr<Scene>(std::make_unique<Banner>(kBannerFields.of(values), setup));
         },
     .retired = kRetiredBannerParameters};

@@ -27,7 +27,7 @@ bool is_lone_band(const CarriedNoiseSpec& spec) {
   return spec.shortest_m > 0.0 && !spec.has_two_tiles;
 }
 
-double largest_difference(const noise::NoiseTile2& a, const noise::NoiseTile2& b) {
+double largest_difference(const noise::Tile2& a, const noise::Tile2& b) {
   float largest = 0.0F;
   for (std::size_t i = 0; i < a.values.size(); ++i) largest = std::max(largest, std::abs(a.values[i] - b.values[i]));
   return static_cast<double>(largest);
@@ -45,7 +45,7 @@ void add_phases(std::span<const float> x_m, std::span<const float> z_m, double c
 
 }  // namespace
 
-double steepest_slope(const noise::NoiseTile2& tile, double period_m) noexcept {
+double steepest_slope(const noise::Tile2& tile, double period_m) noexcept {
   float along_x = 0.0F;
   float along_z = 0.0F;
   for (std::size_t z = 0; z < tile.size; ++z) {
@@ -60,13 +60,13 @@ double steepest_slope(const noise::NoiseTile2& tile, double period_m) noexcept {
 
 CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m) {
   const bool is_band = spec.shortest_m > 0.0;
-  noise::NoiseTile2 noise = noise::make_noise_2d({.size = spec.samples,
-                                                  .beta = spec.beta,
-                                                  .meaning = spec.meaning,
-                                                  .seed = spec.seed ^ which,
-                                                  .from_cycles = period_m / spec.longest_m,
-                                                  .to_cycles = period_m / spec.shortest_m})
-                                .value();
+  noise::Tile2 noise = noise::make_noise_2d({.size = spec.samples,
+                                             .beta = spec.beta,
+                                             .meaning = spec.meaning,
+                                             .seed = spec.seed ^ which,
+                                             .from_cycles = period_m / spec.longest_m,
+                                             .to_cycles = period_m / spec.shortest_m})
+                           .value();
   if (is_band) noise::scale_to_unit_reading(noise);
   Tile tile{.noise = is_band ? noise::BandLimitedTile2(std::move(noise), 1) : noise::BandLimitedTile2(std::move(noise)),
             .period_m = period_m};

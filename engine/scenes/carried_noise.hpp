@@ -28,7 +28,7 @@ struct CarriedNoiseSpec {
 };
 
 /// The steepest slope of a tile of `period_m` read bilinearly, in any direction, a metre.
-double steepest_slope(const noise::NoiseTile2& tile, double period_m) noexcept;
+double steepest_slope(const noise::Tile2& tile, double period_m) noexcept;
 
 /// Where many things stand, on each tile of a CarriedNoise: phases, one element a thing.
 struct CarriedPlaces {

@@ -230,7 +230,7 @@ double Cloth::largest_joint_step_m(double dt_s, double lean_step, double turn_st
   return std::min(2.0 * spec_.length_m * step + turn_step_rad * reach_m, 2.0 * reach_m) + kRounding_m;
 }
 
-EastSouth turned_by_heading(const ScenePlacement& placement, double east, double south) noexcept {
+EastSouth turned_by_heading(const Placement& placement, double east, double south) noexcept {
   const double heading_rad = placement.heading_deg * kRadPerDeg;
   const double cosine = std::cos(heading_rad);
   const double sine = std::sin(heading_rad);

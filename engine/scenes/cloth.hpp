@@ -122,7 +122,7 @@ struct EastSouth {
   double east;
   double south;
 };
-EastSouth turned_by_heading(const ScenePlacement& placement, double east, double south) noexcept;
+EastSouth turned_by_heading(const Placement& placement, double east, double south) noexcept;
 
 /// The lean of a link that is turned by so much from straight down.
 double lean_of_deg(double angle_deg) noexcept;

@@ -13,7 +13,7 @@ namespace yuragi::scenes {
 ///
 /// From one tick of dt to the next it changes by at most largest_step(dt), whatever the wind does: it follows a target
 /// that stays between 0 and 1, so that its rate never exceeds 2 w / e (CriticallyDamped's impulse response, see
-/// SceneWind). Calm from the beginning stays 0, and what has come closer to 0 than 1e-9 is 0. Thread-safe: no; one
+/// Wind). Calm from the beginning stays 0, and what has come closer to 0 than 1e-9 is 0. Thread-safe: no; one
 /// owner. Realtime-safe: yes.
 class ClothStrength {
  public:

@@ -35,7 +35,7 @@ Vector unit(const Vector& a) {
   return scaled(1.0 / std::sqrt(dot(a, a)), a);
 }
 
-noise::NoiseTile2 coat_noise(const CoatSpec& spec, std::string_view property) {
+noise::Tile2 coat_noise(const CoatSpec& spec, std::string_view property) {
   const std::size_t size = std::bit_ceil(std::max({spec.hairs_along, spec.hairs_around, noise::kMinNoiseSize}));
   return noise::make_noise_2d({.size = size,
                                .beta = kCoatBeta,
@@ -52,9 +52,9 @@ Coat make_coat(const CoatSpec& spec) {
   for (auto* array : {&coat.place_x_m, &coat.place_z_m, &coat.normal_x, &coat.normal_z, &coat.flexibility}) {
     array->assign(coat.skeleton.padded_count(), 0.0F);
   }
-  const noise::NoiseTile2 parting_noise = coat_noise(spec, "coat parting");
-  const noise::NoiseTile2 length_noise = coat_noise(spec, "coat length");
-  const noise::NoiseTile2 lie_noise = coat_noise(spec, "coat lie");
+  const noise::Tile2 parting_noise = coat_noise(spec, "coat parting");
+  const noise::Tile2 length_noise = coat_noise(spec, "coat length");
+  const noise::Tile2 lie_noise = coat_noise(spec, "coat lie");
   const math::RandomStream random(spec.seed, math::stream_id("coat stray"));
 
   const double a_m = 0.5 * spec.body_length_m;

@@ -147,7 +147,7 @@ ClothSpec curtain_spec(const CurtainSettings& settings) {
 }
 
 /// The columns from west to east at a heading of 0, folded toward north and south.
-ClothEdge curtain_edge(const CurtainSettings& settings, const SceneSetup& setup) {
+ClothEdge curtain_edge(const CurtainSettings& settings, const Setup& setup) {
   ClothEdge edge(settings.columns);
   const double height_m = settings.height_m;
   const double depth_m = 0.5 * settings.fold_depth_m;
@@ -178,7 +178,7 @@ ClothEdge curtain_edge(const CurtainSettings& settings, const SceneSetup& setup)
 
 class Curtain final : public Scene {
  public:
-  Curtain(const CurtainSettings& settings, const SceneSetup& setup)
+  Curtain(const CurtainSettings& settings, const Setup& setup)
       : Curtain(curtain_edge(settings, setup), settings, setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
@@ -193,7 +193,7 @@ class Curtain final : public Scene {
         dt_s, pull_step * (1.0 + 2.0 * ClothNoise::kLargest * flutter_) + 2.0 * flutter_ * flutter_step * later);
   }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     const double speed_m_s = wind_.speed_m_s();
@@ -277,7 +277,7 @@ class Curtain final : public Scene {
   }
 
  private:
-  Curtain(const ClothEdge& edge, const CurtainSettings& settings, const SceneSetup& setup)
+  Curtain(const ClothEdge& edge, const CurtainSettings& settings, const Setup& setup)
       : row_(setup.row),
         half_sway_speed_m_s_(settings.half_sway_speed_m_s),
         give_sideways_(settings.give_sideways),
@@ -350,7 +350,7 @@ class Curtain final : public Scene {
   double calm_delay_s_;  ///< from the top to the hem
   EastSouth along_;      ///< the curtain's own direction, from the first column to the last
 
-  SceneWind wind_;
+  Wind wind_;
   ClothStrength strength_;
   ClothNoise gust_noise_, breath_noise_, hem_noise_;
   Cloth cloth_;
@@ -376,13 +376,13 @@ const std::array kRetiredCurtainParameters = {
 
 }  // namespace
 
-extern const SceneDescription kCurtainScene;
-const SceneDescription kCurtainScene = {
+extern const Description kCurtainScene;
+const Description kCurtainScene = {
     .name = "curtain",
     .summary = "a curtain that billows, and waves that run down and along it",
     .parameters = kCurtainFields.parameters(),
     .make =
-        [](const ParameterValues& values, const SceneSetup& setup) {
+        [](const ParameterValues& values, const Setup& setup) {
           return std::unique_ptr<Scene>(std::make_unique<Curtain>(kCurtainFields.of(values), setup));
         },
     .retired = kRetiredCurtainParameters};

@@ -160,7 +160,7 @@ double droop_at_deg(const FlagSettings& settings, double along) {
 }
 
 /// The columns from the top down, on the pole.
-ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
+ClothEdge flag_edge(const FlagSettings& settings, const Setup& setup) {
   ClothEdge edge(settings.columns);
   const double pitch_m = settings.hoist_m / static_cast<double>(edge.columns - 1);
   const math::RandomStream random(setup.seed, math::stream_id("flag folds"));
@@ -182,7 +182,7 @@ ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
 
 class Flag final : public Scene {
  public:
-  Flag(const FlagSettings& settings, const SceneSetup& setup) : Flag(flag_edge(settings, setup), settings, setup) {}
+  Flag(const FlagSettings& settings, const Setup& setup) : Flag(flag_edge(settings, setup), settings, setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return cloth_.skeleton(); }
   const pose::Pose& pose() const noexcept override { return cloth_.pose(); }
@@ -197,7 +197,7 @@ class Flag final : public Scene {
         dt_s, lift_step * (1.0 + 2.0 * longest_rest_) + longest * (1.0 + kLowerCurl) * flutter_rad_ * noise_step);
   }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     strength_.step(wind_.speed_m_s(), half_flutter_speed_m_s_, dt_s);
     const double speed_m_s = std::min(wave_speed_ * wind_.speed_m_s(), kFastestWave_m_s);
@@ -274,7 +274,7 @@ class Flag final : public Scene {
     }
   };
 
-  Flag(const ClothEdge& edge, const FlagSettings& settings, const SceneSetup& setup)
+  Flag(const ClothEdge& edge, const FlagSettings& settings, const Setup& setup)
       : half_lift_speed_m_s_(settings.half_lift_speed_m_s),
         lift_hz_(settings.lift_rate_hz),
         flutter_rad_(settings.max_flutter_deg / ClothNoise::kLargest * kRadPerDeg),
@@ -342,7 +342,7 @@ class Flag final : public Scene {
   double edge_flutter_;
   double longest_rest_;  ///< lean at rest
 
-  SceneWind wind_;
+  Wind wind_;
   ClothStrength strength_;
   Lift lift_east_, lift_south_;  ///< leans
   Cloth cloth_;
@@ -364,13 +364,13 @@ const std::array kRetiredFlagParameters = {
 
 }  // namespace
 
-extern const SceneDescription kFlagScene;
-const SceneDescription kFlagScene = {
+extern const Description kFlagScene;
+const Description kFlagScene = {
     .name = "flag",
     .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
     .parameters = kFlagFields.parameters(),
     .make =
-        [](const ParameterValues& values, const SceneSetup& setup) {
+        [](const ParameterValues& values, const Setup& setup) {
           return std::unique_ptr<Scene>(std::make_unique<Flag>(kFlagFields.of(values), setup));
         },
     .retired = kRetiredFlagParameters};

@@ -180,20 +180,20 @@ LayeredNoise flame_noise(const FlameBody& body, const FlameSettings& settings, d
 }
 
 /// A noise for the puffs' pace, with waves of one to twelve seconds and more, for it is read along a line.
-noise::NoiseTile2 pace_of_puffs(std::uint64_t seed) {
-  noise::NoiseTile2 pace = noise::make_noise_2d({.size = 128,
-                                                 .beta = 1.0,
-                                                 .seed = seed ^ math::stream_id("flame pace"),
-                                                 .from_cycles = 4.0,
-                                                 .to_cycles = 48.0})
-                               .value();
+noise::Tile2 pace_of_puffs(std::uint64_t seed) {
+  noise::Tile2 pace = noise::make_noise_2d({.size = 128,
+                                            .beta = 1.0,
+                                            .seed = seed ^ math::stream_id("flame pace"),
+                                            .from_cycles = 4.0,
+                                            .to_cycles = 48.0})
+                          .value();
   noise::scale_to_unit_reading(pace);
   return pace;
 }
 
 class Flame final : public Scene {
  public:
-  Flame(const FlameSettings& settings, const SceneSetup& setup)
+  Flame(const FlameSettings& settings, const Setup& setup)
       : Flame(make_flame_body({.is_panel = settings.is_panel,
                                .columns = settings.columns,
                                .rows = settings.rows,
@@ -206,7 +206,7 @@ class Flame final : public Scene {
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     kindled_.step(1.0, kKindle_rad_s, dt_s);
     double east_m_s = exposure_ * wind_.east_m_s();
@@ -282,7 +282,7 @@ class Flame final : public Scene {
   }
 
  private:
-  Flame(FlameBody body, const FlameSettings& settings, const SceneSetup& setup)
+  Flame(FlameBody body, const FlameSettings& settings, const Setup& setup)
       : row_(setup.row),
         rise_m_s_(settings.rise_speed_m_s),
         height_m_(settings.height_m),
@@ -374,11 +374,11 @@ class Flame final : public Scene {
   double puff_hz_;
   double across_;  ///< of a tile's metres in one across the flame
 
-  SceneWind wind_;
+  Wind wind_;
   math::CriticallyDamped kindled_;  ///< 0 unlit, 1 burning
   FlameAxis axis_;
   LayeredNoise noise_;
-  noise::NoiseTile2 pace_;
+  noise::Tile2 pace_;
   noise::LineCut pace_at_;
   double puffed_ = 0.0;                          ///< puffs, their whole number left out
   double puff_ = 0.0;                            ///< what one lowers the threshold by at most
@@ -391,13 +391,13 @@ class Flame final : public Scene {
 
 }  // namespace
 
-extern const SceneDescription kFlameScene;
-const SceneDescription kFlameScene = {
+extern const Description kFlameScene;
+const Description kFlameScene = {
     .name = "flame",
     .summary = "a flame: tongues of noise rise, it breathes, and the wind lays it over",
     .parameters = kFlameFields.parameters(),
     .make =
-        [](const ParameterValues& values, const SceneSetup& setup) {
+        [](const ParameterValues& values, const Setup& setup) {
           return std::unique_ptr<Scene>(std::make_unique<Flame>(kFlameFields.of(values), setup));
         },
     .is_still_in_calm = false,

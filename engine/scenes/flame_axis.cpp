@@ -40,18 +40,18 @@ constexpr double kWobbleFrom = 8.0;  ///< waves a tile
 constexpr double kWobbleTo = 32.0;
 constexpr noise::TorusPhase kSouthOfEast{0x5a000000U, 0x93000000U};  ///< where the second component is read
 
-noise::NoiseTile2 wobble_tile(std::uint64_t seed) {
-  noise::NoiseTile2 tile = noise::make_noise_2d({.size = kWobbleSamples,
-                                                 .beta = 1.0,
-                                                 .seed = seed ^ math::stream_id("flame wobble"),
-                                                 .from_cycles = kWobbleFrom,
-                                                 .to_cycles = kWobbleTo})
-                               .value();
+noise::Tile2 wobble_tile(std::uint64_t seed) {
+  noise::Tile2 tile = noise::make_noise_2d({.size = kWobbleSamples,
+                                            .beta = 1.0,
+                                            .seed = seed ^ math::stream_id("flame wobble"),
+                                            .from_cycles = kWobbleFrom,
+                                            .to_cycles = kWobbleTo})
+                          .value();
   noise::scale_to_unit_reading(tile);
   return tile;
 }
 
-double largest_of(const noise::NoiseTile2& tile) {
+double largest_of(const noise::Tile2& tile) {
   float largest = 0.0F;
   for (const float value : tile.values) largest = std::max(largest, std::abs(value));
   return static_cast<double>(largest);

@@ -78,7 +78,7 @@ class FlameAxis {
   /// profile.
   double relative_wind_s_m_ = 0.0;
   FlameInWind strongest_;
-  noise::NoiseTile2 wobble_;
+  noise::Tile2 wobble_;
   double wobble_steepest_per_s_, wobble_largest_;
   noise::LineCut wobbled_;
   Oscillator lean_east_, lean_south_, missing_;

@@ -108,7 +108,7 @@ void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
 
 }  // namespace
 
-FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement) {
+FlameBody make_flame_body(const FlameBodySpec& spec, const Placement& placement) {
   FlameBody body;
   body.is_panel = spec.is_panel;
   const std::size_t shells = spec.is_panel ? 1 : kFlameShells.size();

@@ -40,6 +40,6 @@ struct FlameBody {
 
 /// Lays a flame out over the world's origin, and places it. Allocates; may throw std::bad_alloc.
 /// Thread-safe: yes. Realtime-safe: no.
-FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement);
+FlameBody make_flame_body(const FlameBodySpec& spec, const Placement& placement);
 
 }  // namespace yuragi::scenes

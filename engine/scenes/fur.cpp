@@ -101,7 +101,7 @@ const std::array kRetiredFurParameters = {
     RetiredParameter{"beta_meaning", "is gone, like beta"},
 };
 
-Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
+Coat placed_coat(const ParameterValues& values, const Setup& setup) {
   CoatSpec spec = kCoatFields.of(values);
   spec.seed = setup.seed;
   Coat coat = make_coat(spec);
@@ -112,13 +112,13 @@ Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
 
 class Fur final : public Scene {
  public:
-  Fur(const ParameterValues& values, const SceneSetup& setup)
+  Fur(const ParameterValues& values, const Setup& setup)
       : Fur(placed_coat(values, setup), kFurSwayFields.of(values), setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     // Strokes run over the coat as it lies unrolled: along the body, and around it.
     const double speed_m_s = wind_.speed_m_s();
@@ -180,7 +180,7 @@ class Fur final : public Scene {
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_stroke = math::length(1.0, kStrokeAcross) * kMaxStroke;
     const double largest_bend_rad = sway_.max_bend_rad + sway_.stroke_rad * largest_stroke;
-    const double s = largest_flexibility_ / sway_.half_bend_speed_m_s * SceneWind::largest_step_m_s(dt_s);
+    const double s = largest_flexibility_ / sway_.half_bend_speed_m_s * Wind::largest_step_m_s(dt_s);
     const double slope = operators::kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * sway_.max_bend_rad;
     const double stroke_step = math::length(1.0, kStrokeAcross) *
                                strokes_.largest_change(sway_.fastest_stroke_m_s, sway_.fastest_stroke_m_s, dt_s);
@@ -193,7 +193,7 @@ class Fur final : public Scene {
   }
 
  private:
-  Fur(Coat coat, const FurSway& sway, const SceneSetup& setup)
+  Fur(Coat coat, const FurSway& sway, const Setup& setup)
       : row_(setup.row),
         sway_(sway),
         heading_cos_(std::cos(setup.placement.heading_deg * kRadPerDeg)),
@@ -226,7 +226,7 @@ class Fur final : public Scene {
   FurSway sway_;
   double heading_cos_, heading_sin_;
 
-  SceneWind wind_;
+  Wind wind_;
   CarriedNoise strokes_;
   CarriedPlaces places_, elsewhere_;   ///< of each hair on the coat
   std::vector<float> along_, across_;  ///< what it reads there
@@ -240,13 +240,13 @@ class Fur final : public Scene {
 
 }  // namespace
 
-extern const SceneDescription kFurScene;
-const SceneDescription kFurScene = {
+extern const Description kFurScene;
+const Description kFurScene = {
     .name = "fur",
     .summary = "a coat on a curved body: the wind parts it and strokes over it",
     .parameters = kFurParameters,
     .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup)); },
+               const Setup& setup) { return std::unique_ptr<Scene>(std::make_unique<Fur>(values, setup)); },
     .retired = kRetiredFurParameters};
 
 }  // namespace yuragi::scenes

@@ -40,7 +40,7 @@ const Fields<MeadowSpec> kMeadowFields = {
 const Fields<StrandSwaySpec> kGrassSwayFields = strand_sway_fields(kGrassSway);
 const std::vector<Parameter> kGrassParameters = together(kMeadowFields.parameters(), kGrassSwayFields.parameters());
 
-std::unique_ptr<Scene> make_grass(const ParameterValues& values, const SceneSetup& setup) {
+std::unique_ptr<Scene> make_grass(const ParameterValues& values, const Setup& setup) {
   MeadowSpec blades = kMeadowFields.of(values);
   blades.seed = setup.seed;
   Meadow meadow = make_meadow(blades);
@@ -54,10 +54,10 @@ std::unique_ptr<Scene> make_grass(const ParameterValues& values, const SceneSetu
 
 }  // namespace
 
-extern const SceneDescription kGrassScene;
-const SceneDescription kGrassScene = {.name = "grass",
-                                      .summary = "a meadow in the wind: blades bend as gusts pass over them",
-                                      .parameters = kGrassParameters,
-                                      .make = make_grass};
+extern const Description kGrassScene;
+const Description kGrassScene = {.name = "grass",
+                                 .summary = "a meadow in the wind: blades bend as gusts pass over them",
+                                 .parameters = kGrassParameters,
+                                 .make = make_grass};
 
 }  // namespace yuragi::scenes

@@ -52,7 +52,7 @@ pose::StrandSkeleton ground_nodes(const GroundSpec& ground) {
   return nodes;
 }
 
-std::unique_ptr<Scene> make_ground(const ParameterValues& values, const SceneSetup& setup) {
+std::unique_ptr<Scene> make_ground(const ParameterValues& values, const Setup& setup) {
   const GroundSpec ground = kGroundFields.of(values);
   pose::StrandSkeleton nodes = ground_nodes(ground);
   place(setup.placement, nodes);
@@ -69,8 +69,8 @@ std::unique_ptr<Scene> make_ground(const ParameterValues& values, const SceneSet
 
 }  // namespace
 
-extern const SceneDescription kGroundScene;
-const SceneDescription kGroundScene = {
+extern const Description kGroundScene;
+const Description kGroundScene = {
     .name = "ground",
     .summary = "the meadow to the horizon around all other scenes, as the bends of its grass on a coarse grid",
     .parameters = kGroundParameters,

@@ -96,7 +96,7 @@ void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment, const Gu
   add_coarse(lines);
 }
 
-void GustNodes::read_carried(const wind::turbulence::GustNoise::Moment& moment, wind::WindVector carried_m,
+void GustNodes::read_carried(const wind::turbulence::GustNoise::Moment& moment, wind::Vector carried_m,
                              const GustWeights& weights, const NodeRange& lines) noexcept {
   wind::turbulence::GustNoise::Moment later = moment;
   gusts_->carry(later.carried, carried_m.u_m_s, -carried_m.v_m_s, 1.0);

@@ -78,7 +78,7 @@ class GustNodes {
             const NodeRange& lines) noexcept;
   /// The same as it will be when the mean wind has carried the gusts on by `carried_m` (east and north). Their eddies
   /// do not turn meanwhile.
-  void read_carried(const wind::turbulence::GustNoise::Moment& moment, wind::WindVector carried_m,
+  void read_carried(const wind::turbulence::GustNoise::Moment& moment, wind::Vector carried_m,
                     const GustWeights& weights, const NodeRange& lines) noexcept;
 
   /// What was read: m/s at each node, along the mean wind and to the left of it.

@@ -62,7 +62,7 @@ LayeredNoise::LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<con
 
     // A tile that is read bilinearly is nowhere steeper than between neighbours.
     Layer& layer = layers_.back();
-    const noise::NoiseTile2& tile = layer.tile;
+    const noise::Tile2& tile = layer.tile;
     float steepest_x = 0.0F;
     float steepest_z = 0.0F;
     double squares = 0.0;

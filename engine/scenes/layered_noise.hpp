@@ -14,7 +14,7 @@ namespace yuragi::scenes {
 
 /// One layer of a LayeredNoise.
 struct NoiseLayerSpec {
-  noise::NoiseSpec noise;
+  noise::Spec noise;
   double period_x_m = 1.0;  ///< of the tile along x, above 0
   double period_z_m = 1.0;  ///< along z: a tile may be stretched
   float weight = 1.0F;      ///< above 0: its standard deviation in the sum, at most (set_weight)
@@ -66,7 +66,7 @@ class LayeredNoise {
 
  private:
   struct Layer {
-    noise::NoiseTile2 tile;
+    noise::Tile2 tile;
     double period_x_m;
     double period_z_m;
     float weight;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLayoutBeta = 0.7;
 
 /// One property of all blades: a noise of mean 0 and variance 1, a sample a blade.
-noise::NoiseTile2 layout_noise(const MeadowSpec& spec, std::string_view property) {
+noise::Tile2 layout_noise(const MeadowSpec& spec, std::string_view property) {
   const std::size_t size = std::bit_ceil(std::max({spec.blades_across, spec.blades_deep, noise::kMinNoiseSize}));
   return noise::make_noise_2d({.size = size,
                                .beta = kLayoutBeta,
@@ -37,12 +37,12 @@ Meadow make_meadow(const MeadowSpec& spec) {
   const std::size_t count = spec.blades_across * spec.blades_deep;
   Meadow meadow{blank_strands(count, spec.links), {}};
   meadow.flexibility.assign(meadow.skeleton.padded_count(), 0.0F);
-  const noise::NoiseTile2 x_noise = layout_noise(spec, "meadow x");
-  const noise::NoiseTile2 z_noise = layout_noise(spec, "meadow z");
-  const noise::NoiseTile2 length_noise = layout_noise(spec, "meadow length");
-  const noise::NoiseTile2 heading_noise = layout_noise(spec, "meadow heading");
-  const noise::NoiseTile2 tilt_noise = layout_noise(spec, "meadow tilt");
-  const noise::NoiseTile2 curl_noise = layout_noise(spec, "meadow curl");
+  const noise::Tile2 x_noise = layout_noise(spec, "meadow x");
+  const noise::Tile2 z_noise = layout_noise(spec, "meadow z");
+  const noise::Tile2 length_noise = layout_noise(spec, "meadow length");
+  const noise::Tile2 heading_noise = layout_noise(spec, "meadow heading");
+  const noise::Tile2 tilt_noise = layout_noise(spec, "meadow tilt");
+  const noise::Tile2 curl_noise = layout_noise(spec, "meadow curl");
 
   const double pitch_x_m = spec.width_m / static_cast<double>(spec.blades_across);
   const double pitch_z_m = spec.depth_m / static_cast<double>(spec.blades_deep);

@@ -8,13 +8,13 @@
 namespace yuragi::scenes {
 
 /// Turns directions (or places), their parts east and south, by the heading. Thread-safe and realtime-safe as place().
-void turn(const ScenePlacement& placement, std::span<float> x, std::span<float> z) noexcept;
+void turn(const Placement& placement, std::span<float> x, std::span<float> z) noexcept;
 
 /// Turns a model that was laid out around the world's origin by its heading, clockwise seen from above, and moves it to
 /// where it stands. No heading and no way change no bit. Thread-safe: different skeletons, yes. Realtime-safe: yes.
-void place(const ScenePlacement& placement, pose::StrandSkeleton& strands) noexcept;
-void place(const ScenePlacement& placement, pose::GridSkeleton& grid) noexcept;
-void place(const ScenePlacement& placement, pose::TreeSkeleton& tree) noexcept;
-void place(const ScenePlacement& placement, pose::SurfaceSkeleton& surface) noexcept;
+void place(const Placement& placement, pose::StrandSkeleton& strands) noexcept;
+void place(const Placement& placement, pose::GridSkeleton& grid) noexcept;
+void place(const Placement& placement, pose::TreeSkeleton& tree) noexcept;
+void place(const Placement& placement, pose::SurfaceSkeleton& surface) noexcept;
 
 }  // namespace yuragi::scenes

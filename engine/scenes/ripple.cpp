@@ -134,7 +134,7 @@ pose::SurfaceSkeleton level_water(const RippleSettings& settings, std::size_t co
 }
 
 pose::SurfaceSkeleton placed_water(const RippleSettings& settings, std::size_t columns, std::size_t rows,
-                                   const ScenePlacement& placement) {
+                                   const Placement& placement) {
   pose::SurfaceSkeleton water = level_water(settings, columns, rows);
   place(placement, water);
   return water;
@@ -168,11 +168,11 @@ std::array<NoiseLayerSpec, 2> wave_layers(const RippleSettings& settings, std::u
   const double period_m = kWavesPerTile * settings.wave_length_m;
   const double scale = 1.0 / (kWavesPerTile * 2.0 * std::numbers::pi * std::sqrt(beta) * noise::kVonKarmanCorner);
   const auto waves = [&](std::uint64_t which) {
-    return noise::NoiseSpec{.size = kWaveSamples,
-                            .beta = beta,
-                            .seed = seed ^ which,
-                            .integral_scale = scale,
-                            .from_cycles = kWavesPerTile / kLongest};
+    return noise::Spec{.size = kWaveSamples,
+                       .beta = beta,
+                       .seed = seed ^ which,
+                       .integral_scale = scale,
+                       .from_cycles = kWavesPerTile / kLongest};
   };
   return {
       {{waves(math::stream_id("ripple waves")), period_m, period_m, 1.0F, kWaveBand},
@@ -181,13 +181,13 @@ std::array<NoiseLayerSpec, 2> wave_layers(const RippleSettings& settings, std::u
 
 class Ripple final : public Scene {
  public:
-  Ripple(const RippleSettings& settings, const SceneSetup& setup)
+  Ripple(const RippleSettings& settings, const Setup& setup)
       : Ripple(placed_water(settings, settings.columns, settings.rows, setup.placement), settings, setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
     const double east_m_s = wind_.east_m_s();
     const double south_m_s = wind_.south_m_s();
@@ -255,7 +255,7 @@ class Ripple final : public Scene {
   }
 
  private:
-  Ripple(pose::SurfaceSkeleton water, const RippleSettings& settings, const SceneSetup& setup)
+  Ripple(pose::SurfaceSkeleton water, const RippleSettings& settings, const Setup& setup)
       : row_(setup.row),
         gustiness_(settings.gustiness),
         wave_speed_m_s_{wave_speed(settings.wave_length_m), wave_speed(kShorter * settings.wave_length_m)},
@@ -297,7 +297,7 @@ class Ripple final : public Scene {
   double gustiness_;
   std::array<double, 2> wave_speed_m_s_;
 
-  SceneWind wind_;
+  Wind wind_;
   math::CriticallyDamped long_part_;  ///< 0: as in a light wind, to 1
   LayeredNoise waves_;                ///< the long field and the short one
   CarriedNoise gusts_;                ///< of its own
@@ -313,13 +313,13 @@ class Ripple final : public Scene {
 
 }  // namespace
 
-extern const SceneDescription kRippleScene;
-const SceneDescription kRippleScene = {
+extern const Description kRippleScene;
+const Description kRippleScene = {
     .name = "ripple",
     .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
     .parameters = kRippleFields.parameters(),
     .make =
-        [](const ParameterValues& values, const SceneSetup& setup) {
+        [](const ParameterValues& values, const Setup& setup) {
           return std::unique_ptr<Scene>(std::make_unique<Ripple>(kRippleFields.of(values), setup));
         },
     .retired = kRetiredRippleParameters};

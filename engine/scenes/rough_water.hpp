@@ -55,7 +55,7 @@ class RoughWater {
   RoughWaterSpec spec_;
   std::size_t node_columns_, node_rows_;
   std::vector<float> value_, rate_per_s_;
-  noise::NoiseTile2 on_torus_;                   ///< the values, where points read them
+  noise::Tile2 on_torus_;                        ///< the values, where points read them
   std::vector<std::uint32_t> column_x_, row_z_;  ///< of the points, on it
 };
 

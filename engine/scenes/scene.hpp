@@ -26,14 +26,14 @@ class Scene {
   virtual ~Scene() = default;
 
   /// Advances by dt_s (above 0) under `wind` (finite).
-  void tick(const wind::ground::GroundWind& wind, double dt_s) noexcept {
+  void tick(const wind::ground::Wind& wind, double dt_s) noexcept {
     shift(wind, dt_s);
     sample();
     project(dt_s);
   }
 
   // The three steps of a tick, in this order, one by one: for benchmarks, and for work that threads share.
-  virtual void shift(const wind::ground::GroundWind& wind,
+  virtual void shift(const wind::ground::Wind& wind,
                      double dt_s) noexcept = 0;    ///< the wind carries the noise on
   virtual void sample() noexcept = 0;              ///< each element reads it
   virtual void project(double dt_s) noexcept = 0;  ///< and is moved: the pose
@@ -59,7 +59,7 @@ class Scene {
 };
 
 /// Where a scene stands in the world: its own origin, and what in it is north.
-struct ScenePlacement {
+struct Placement {
   double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.0;
@@ -67,9 +67,9 @@ struct ScenePlacement {
 };
 
 /// What a scene is made with, besides its parameters.
-struct SceneSetup {
+struct Setup {
   std::uint64_t seed = 0;  ///< everything random in the model and its noises comes from it
-  ScenePlacement placement = {};
+  Placement placement = {};
   SimdRow row = best_simd_row();
   /// The gusts of the wind that the scene will be given, shared with all other scenes and with the wind's source.
   /// Without, the wind is the same everywhere, and what differs from place to place is the scene's own noise.
@@ -83,18 +83,18 @@ struct RetiredParameter {
 };
 
 /// A kind of scene: one constant `kXScene` in its own file, listed in engine/scenes/CMakeLists.txt.
-struct SceneDescription {
+struct Description {
   std::string_view name;
   std::string_view summary;
   std::span<const Parameter> parameters;
   /// Lays the model out where it stands.
-  std::unique_ptr<Scene> (*make)(const ParameterValues& values, const SceneSetup& setup);
+  std::unique_ptr<Scene> (*make)(const ParameterValues& values, const Setup& setup);
   /// Calm air from the start keeps it in its rest pose, bit for bit. What burns is not still.
   bool is_still_in_calm = true;
   std::span<const RetiredParameter> retired = {};
 };
 
 /// Every kind of scene (generated).
-std::span<const SceneDescription* const> scene_table();
+std::span<const Description* const> scene_table();
 
 }  // namespace yuragi::scenes

@@ -20,34 +20,33 @@ void settle(math::CriticallyDamped& follower) noexcept {
 
 }  // namespace
 
-SceneWind::SceneWind(const ScenePlacement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts,
-                     WindPart part)
+Wind::Wind(const Placement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts, WindPart part)
     : gusts_(std::move(gusts)), part_(part), place_x_m_(placement.x_m), place_z_m_(placement.z_m) {}
 
-wind::WindVector SceneWind::at_place(const wind::ground::GroundWind& wind) const noexcept {
+wind::Vector Wind::at_place(const wind::ground::Wind& wind) const noexcept {
   if (part_ == WindPart::kMean) return wind.smooth_at(place_x_m_, place_z_m_);
   if (!gusts_) return wind.measured_at(place_x_m_, place_z_m_);
   return wind.at(*gusts_, place_x_m_, place_z_m_);
 }
 
-wind::WindVector SceneWind::cut(wind::WindVector wind) noexcept {
+wind::Vector Wind::cut(wind::Vector wind) noexcept {
   const double speed_m_s = std::sqrt(wind.u_m_s * wind.u_m_s + wind.v_m_s * wind.v_m_s);
   return speed_m_s > kStrongestSceneWind_m_s ? (kStrongestSceneWind_m_s / speed_m_s) * wind : wind;
 }
 
-void SceneWind::step(const wind::ground::GroundWind& wind, double dt_s) noexcept {
-  const wind::WindVector here = cut(at_place(wind));
+void Wind::step(const wind::ground::Wind& wind, double dt_s) noexcept {
+  const wind::Vector here = cut(at_place(wind));
   east_.step(here.u_m_s, kOmega_rad_s, dt_s);
   south_.step(-here.v_m_s, kOmega_rad_s, dt_s);
   settle(east_);
   settle(south_);
 }
 
-double SceneWind::speed_m_s() const noexcept {
+double Wind::speed_m_s() const noexcept {
   return std::sqrt(east_.value * east_.value + south_.value * south_.value);
 }
 
-double SceneWind::largest_step_m_s(double dt_s) noexcept {
+double Wind::largest_step_m_s(double dt_s) noexcept {
   const double rate_m_s2 = 2.0 * kStrongestSceneWind_m_s * kOmega_rad_s / std::numbers::e;
   return std::min(rate_m_s2 * dt_s, 2.0 * kStrongestSceneWind_m_s);
 }

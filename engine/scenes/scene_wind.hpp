@@ -8,7 +8,7 @@
 
 namespace yuragi::scenes {
 
-struct ScenePlacement;
+struct Placement;
 
 /// What of the wind over the ground a scene feels in its place.
 enum class WindPart : std::uint8_t {
@@ -23,18 +23,17 @@ enum class WindPart : std::uint8_t {
 /// convolved with the derivative of the impulse response w^2 t exp(-w t), whose magnitude integrates to 2 w / e, and
 /// the input is never longer than kStrongestSceneWind_m_s. It is never longer than that itself, since the impulse
 /// response is positive and integrates to 1. Thread-safe: no. Realtime-safe: yes.
-class SceneWind {
+class Wind {
  public:
   static constexpr double kOmega_rad_s = 20.0;
 
   /// The wind in the place of a scene. `gusts`: the noise of the wind that it will be given; without it, only what was
   /// measured blows there.
-  explicit SceneWind(const ScenePlacement& placement,
-                     std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr,
-                     WindPart part = WindPart::kAll);
+  explicit Wind(const Placement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr,
+                WindPart part = WindPart::kAll);
 
   /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
-  void step(const wind::ground::GroundWind& wind, double dt_s) noexcept;
+  void step(const wind::ground::Wind& wind, double dt_s) noexcept;
 
   double east_m_s() const noexcept { return east_.value; }
   double south_m_s() const noexcept { return south_.value; }
@@ -43,10 +42,10 @@ class SceneWind {
   static double largest_step_m_s(double dt_s) noexcept;
 
   /// A wind that is too strong for any scene is cut to kStrongestSceneWind_m_s.
-  static wind::WindVector cut(wind::WindVector wind) noexcept;
+  static wind::Vector cut(wind::Vector wind) noexcept;
 
  private:
-  wind::WindVector at_place(const wind::ground::GroundWind& wind) const noexcept;
+  wind::Vector at_place(const wind::ground::Wind& wind) const noexcept;
 
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   WindPart part_;

@@ -59,7 +59,7 @@ StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float
       strength(place_x_m.size(), 0.0F) {}
 
 StrandSway::OutsideGusts::OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec,
-                                       const SceneSetup& setup)
+                                       const Setup& setup)
     : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row, spec.finest_wind_cell_m, strands.columns),
       east_m_s(strands.padded_count(), 0.0F),
       south_m_s(strands.padded_count(), 0.0F),
@@ -69,7 +69,7 @@ StrandSway::OutsideGusts::OutsideGusts(const pose::StrandSkeleton& strands, cons
       strength(strands.padded_count(), 1.0F) {}
 
 StrandSway::StrandSway(pose::StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
-                       std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup)
+                       std::vector<float> flexibility, const StrandSwaySpec& spec, const Setup& setup)
     : row_(setup.row),
       spec_(spec),
       wind_(setup.placement, setup.gusts),
@@ -90,7 +90,7 @@ StrandSway::StrandSway(pose::StrandSkeleton strands, std::span<const float> plac
   }
 }
 
-void StrandSway::shift(const wind::ground::GroundWind& wind, double dt_s) noexcept {
+void StrandSway::shift(const wind::ground::Wind& wind, double dt_s) noexcept {
   steps_.set_pace(natural_hz_, spec_.damping_ratio, dt_s);
   wind_.step(wind, dt_s);
   if (outside_) {
@@ -169,7 +169,7 @@ void StrandSway::project_part(Part part, double) noexcept {
 
 /// The largest change in a tick of wind * gust * strength, m/s.
 double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
-  const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
+  const double wind_step_m_s = Wind::largest_step_m_s(dt_s);
   if (outside_) {
     const double largest_wave = spec_.canopy_waves * kMaxCanopyWave;
     const double wave_step =

@@ -44,7 +44,7 @@ struct StrandSwaySpec {
 ///   project  a 1-D noise (LineCut) gives Wind-speed, the strength along the wind; both bend    BendingJob
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
-/// Where the wind brings gusts of its own (SceneSetup::gusts), these are the wind on the ground: each strand reads the
+/// Where the wind brings gusts of its own (Setup::gusts), these are the wind on the ground: each strand reads the
 /// wind where it stands (WindGrid), and is bent by it (LocalBendingJob). Over a few metres those gusts hardly differ;
 /// what is seen as bands that run over a stand are waves of its own, born where the wind is slowed at the tops of the
 /// plants and a few times as long as these are high (Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence
@@ -58,12 +58,12 @@ class StrandSway final : public Scene {
   /// `place_x_m` and `place_z_m`: where each strand reads its own noise; `flexibility`: of each. All have
   /// strands.padded_count() elements.
   StrandSway(pose::StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
-             std::vector<float> flexibility, const StrandSwaySpec& spec, const SceneSetup& setup);
+             std::vector<float> flexibility, const StrandSwaySpec& spec, const Setup& setup);
 
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override;
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override;
   void sample() noexcept override { sample_part({}); }
   void project(double dt_s) noexcept override { project_part({}, dt_s); }
   void sample_part(Part part) noexcept override;
@@ -85,7 +85,7 @@ class StrandSway final : public Scene {
 
     CarriedNoise noise;
     CarriedPlaces places;
-    noise::NoiseTile2 along;  ///< Wind-speed, the strength along the wind's way: a line through a noise
+    noise::Tile2 along;  ///< Wind-speed, the strength along the wind's way: a line through a noise
     noise::LineCut way;
     double largest_along = 0.0, steepest_along_per_m = 0.0;
     std::vector<float> strength;  ///< of the wind, as a factor; of each strand
@@ -93,7 +93,7 @@ class StrandSway final : public Scene {
 
   /// Those of the wind outside.
   struct OutsideGusts {
-    OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec, const SceneSetup& setup);
+    OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec, const Setup& setup);
 
     WindGrid grid;
     std::vector<float> east_m_s, south_m_s;  ///< each strand's wind
@@ -106,7 +106,7 @@ class StrandSway final : public Scene {
 
   SimdRow row_;
   StrandSwaySpec spec_;
-  SceneWind wind_;
+  Wind wind_;
   std::optional<OwnGusts> own_;  ///< one of the two
   std::optional<OutsideGusts> outside_;
 

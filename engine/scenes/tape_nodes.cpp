@@ -14,7 +14,7 @@ struct Upwind {
   std::array<double, kAtOnce> x_m, z_m;
   std::size_t count = 0;
 };
-Upwind upwind(std::span<const double> x_m, std::span<const double> z_m, wind::WindVector carried_m) noexcept {
+Upwind upwind(std::span<const double> x_m, std::span<const double> z_m, wind::Vector carried_m) noexcept {
   Upwind from;
   from.count = x_m.size();
   for (std::size_t i = 0; i < from.count; ++i) {
@@ -60,8 +60,8 @@ TapeNodes::TapeNodes(const GustNodes& nodes) : known_(nodes.x_m().size()), gain_
   }
 }
 
-void TapeNodes::read(const wind::ground::GroundWind& wind, const GustNodes& nodes, const NodeRange& lines,
-                     wind::WindVector carried_m) noexcept {
+void TapeNodes::read(const wind::ground::Wind& wind, const GustNodes& nodes, const NodeRange& lines,
+                     wind::Vector carried_m) noexcept {
   const NodeRange fine = nodes.nodes_of(lines);
   for (std::size_t begin = fine.first; begin < fine.first + fine.count; begin += kAtOnce) {
     const NodeRange range{begin, std::min(kAtOnce, fine.first + fine.count - begin)};

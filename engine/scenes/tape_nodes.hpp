@@ -21,18 +21,18 @@ class TapeNodes {
 
   /// Reads a wind that has tapes at the nodes of some lines: as it will be when the mean wind has carried it on by
   /// `carried_m` (east and north).
-  void read(const wind::ground::GroundWind& wind, const GustNodes& nodes, const NodeRange& lines,
-            wind::WindVector carried_m) noexcept;
+  void read(const wind::ground::Wind& wind, const GustNodes& nodes, const NodeRange& lines,
+            wind::Vector carried_m) noexcept;
 
   /// The measured wind at a node.
-  wind::WindVector known(std::size_t node) const noexcept { return known_[node]; }
+  wind::Vector known(std::size_t node) const noexcept { return known_[node]; }
   /// By what the ceiling holds its noise back.
   double gain(std::size_t node) const noexcept { return gain_[node]; }
   /// What is left of each octave of the noise.
   const GustWeights& weights() const noexcept { return weights_; }
 
  private:
-  std::vector<wind::WindVector> known_;
+  std::vector<wind::Vector> known_;
   std::vector<double> gain_;
   std::vector<float> factors_;  ///< of the octaves that are held, along and across, one behind the other
   wind::ground::WindTapes::NoiseLeft left_, coarse_left_;

@@ -225,7 +225,7 @@ constexpr double kMaxTwist_rad = 40.0 * kRadPerDeg;
 constexpr double kBareTwigAngle = 0.75;
 constexpr double kBareTwigGive = 0.12;
 
-pose::TreeSkeleton placed_tree(const TreeSettings& settings, const SceneSetup& setup) {
+pose::TreeSkeleton placed_tree(const TreeSettings& settings, const Setup& setup) {
   TreeSpec model = settings.model;
   model.seed = setup.seed;
   model.habit = settings.species->habit;
@@ -315,12 +315,12 @@ double median(std::vector<double> values) {
 
 class Tree final : public Scene {
  public:
-  Tree(const TreeSettings& settings, const SceneSetup& setup) : Tree(placed_tree(settings, setup), settings, setup) {}
+  Tree(const TreeSettings& settings, const Setup& setup) : Tree(placed_tree(settings, setup), settings, setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
 
-  void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
+  void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     // The wind carries all noises on.
     wind_.step(wind, dt_s);
     middle_wind_.step(wind, dt_s);
@@ -381,12 +381,12 @@ class Tree final : public Scene {
   }
 
  private:
-  Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const SceneSetup& setup);
+  Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const Setup& setup);
 
   /// Where branches are on the ground, x and z.
   using Places = std::array<std::vector<float>, 2>;
 
-  void add_wood(const pose::TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m);
+  void add_wood(const pose::TreeSkeleton& tree, std::size_t level, const Placement& placement, Places& all_m);
   void add_leaves(const pose::TreeLevel& level, std::uint64_t seed);
   void sample_wood(Wood& wood) noexcept;
   void blow_on(Wood& wood) noexcept;
@@ -402,8 +402,8 @@ class Tree final : public Scene {
   double hybrid_, natural_hz_, damping_ratio_;
   double leaf_lean_rad_, leaf_flutter_rad_, half_lean_speed_m_s_;
 
-  SceneWind wind_;         ///< without the gusts, which differ from branch to branch
-  SceneWind middle_wind_;  ///< with those of the tree's middle
+  Wind wind_;         ///< without the gusts, which differ from branch to branch
+  Wind middle_wind_;  ///< with those of the tree's middle
   CarriedNoise noise_, crown_noise_, leaf_noise_;
   std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
   std::array<Wood, kLeaves> wood_;
@@ -413,7 +413,7 @@ class Tree final : public Scene {
   pose::Pose pose_;
 };
 
-Tree::Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const SceneSetup& setup)
+Tree::Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const Setup& setup)
     : row_(setup.row),
       species_(*settings.species),
       flexibility_(settings.flexibility),
@@ -457,7 +457,7 @@ Tree::Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const SceneSet
   pose_ = pose::rest_pose(skeleton_);
 }
 
-void Tree::add_wood(const pose::TreeSkeleton& tree, std::size_t level, const ScenePlacement& placement, Places& all_m) {
+void Tree::add_wood(const pose::TreeSkeleton& tree, std::size_t level, const Placement& placement, Places& all_m) {
   const pose::StrandSkeleton& strands = tree.levels[level].strands;
   const std::size_t padded = strands.padded_count();
   Wood& wood = wood_[level];
@@ -640,13 +640,13 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
 }
 
 // The bend of a leaf is give lean W + axis flutter V noise, W and V being how it responds to the wind u at its twig, 0
-// to 1. u is that of the ground (at most L, and changing by at most dL a tick: SceneWind, WindGrid) times a factor for
+// to 1. u is that of the ground (at most L, and changing by at most dL a tick: Wind, WindGrid) times a factor for
 // the crown's gusts and the tree's own, each the noise (cut at n, and changing by at most largest_change() of its
 // CarriedNoise) times its deviation d. So u is at most L (1 + sum of d n), and changes by at most dL (1 + sum of d n) +
 // L (sum of d dn). W and V are nowhere steeper over u than LeafResponseJob's constants, and the leaves' noise is cut
 // and carried as the others. Neither part changes by more than from one extreme to the other.
 double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
-  const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
+  const double wind_step_m_s = Wind::largest_step_m_s(dt_s);
   const auto change = [&](const CarriedNoise& noise, double carry, double largest) {
     const double noise_step = noise.largest_change(carry * kStrongestSceneWind_m_s, carry * wind_step_m_s, dt_s);
     return std::min(noise_step, 2.0 * largest);
@@ -675,13 +675,13 @@ const std::array kRetiredTreeParameters = {
 
 }  // namespace
 
-extern const SceneDescription kTreeScene;
-const SceneDescription kTreeScene = {
+extern const Description kTreeScene;
+const Description kTreeScene = {
     .name = "tree",
     .summary = "a tree in the wind: branches sway, leaves flutter",
     .parameters = kTreeFields.parameters(),
     .make =
-        [](const ParameterValues& values, const SceneSetup& setup) {
+        [](const ParameterValues& values, const Setup& setup) {
           return std::unique_ptr<Scene>(std::make_unique<Tree>(kTreeFields.of(values), setup));
         },
     .retired = kRetiredTreeParameters};

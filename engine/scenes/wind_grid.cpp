@@ -70,11 +70,11 @@ WindGrid::WindGrid(std::shared_ptr<const wind::turbulence::GustNoise> gusts, std
   due_in_s_.assign(layout_.nodes.lines, 0.0);
 }
 
-void WindGrid::step(const wind::ground::GroundWind& wind, double dt_s) noexcept {
+void WindGrid::step(const wind::ground::Wind& wind, double dt_s) noexcept {
   const ReadingSchedule::Due due = schedule_.advance(wind.tick, dt_s);
   approach_targets(dt_s);
   read(wind, due);
-  const double rate_rad_s = ReadingSchedule::matched_rate_rad_s(SceneWind::kOmega_rad_s, due);
+  const double rate_rad_s = ReadingSchedule::matched_rate_rad_s(Wind::kOmega_rad_s, due);
   follow(east_, rate_rad_s, dt_s);
   follow(south_, rate_rad_s, dt_s);
 }
@@ -95,7 +95,7 @@ void WindGrid::approach_targets(double dt_s) noexcept {
 }
 
 /// The parts that are due.
-void WindGrid::read(const wind::ground::GroundWind& wind, const ReadingSchedule::Due& due) noexcept {
+void WindGrid::read(const wind::ground::Wind& wind, const ReadingSchedule::Due& due) noexcept {
   const std::size_t lines = layout_.nodes.lines;
   for (std::size_t i = 0; i < due.count; ++i) {
     const std::size_t part = (due.first + i) % due.parts;
@@ -112,26 +112,26 @@ void WindGrid::read(const wind::ground::GroundWind& wind, const ReadingSchedule:
 
 /// What is known at each node, and the noise that fills the rest (along the mean wind and to the left of it, turned
 /// into the world), as they will be lead_s later.
-void WindGrid::read_lines(const wind::ground::GroundWind& wind, const NodeRange& lines, double lead_s) noexcept {
+void WindGrid::read_lines(const wind::ground::Wind& wind, const NodeRange& lines, double lead_s) noexcept {
   if (lines.count == 0) return;
-  const wind::WindVector carried_m = lead_s * wind.advection;
+  const wind::Vector carried_m = lead_s * wind.advection;
   if (wind.tapes != nullptr) tape_nodes_.read(wind, gusts_, lines, carried_m);
   gusts_.read_carried(wind.gusts, carried_m, wind.tapes != nullptr ? tape_nodes_.weights() : GustWeights{}, lines);
-  const wind::WindVector ahead = wind.gusts.ahead;
+  const wind::Vector ahead = wind.gusts.ahead;
   const NodeRange nodes = gusts_.nodes_of(lines);
   for (std::size_t i = nodes.first; i < nodes.first + nodes.count; ++i) {
     const auto along = static_cast<double>(gusts_.along_m_s()[i]);
     const auto across = static_cast<double>(gusts_.across_m_s()[i]);
-    const wind::WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
-    const wind::WindVector here = wind.tapes != nullptr ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
-                                                        : wind.untaped_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
-    const wind::WindVector felt = SceneWind::cut(here);
+    const wind::Vector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
+    const wind::Vector here = wind.tapes != nullptr ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
+                                                    : wind.untaped_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
+    const wind::Vector felt = Wind::cut(here);
     east_.next_target[i] = static_cast<float>(felt.u_m_s);
     south_.next_target[i] = static_cast<float>(-felt.v_m_s);
   }
 }
 
-/// SceneWind's filter at each node.
+/// Wind's filter at each node.
 void WindGrid::follow(Component& component, double rate_rad_s, double dt_s) const noexcept {
   const double phase = rate_rad_s * dt_s;
   const double decay = std::exp(-phase);

@@ -15,7 +15,7 @@
 
 namespace yuragi::scenes {
 
-/// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as SceneWind does (cut to
+/// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as Wind does (cut to
 /// kStrongestSceneWind_m_s, smoothed by 0.1 s), gusts of the place included; places between nodes read it bilinearly.
 ///
 /// Reading the wind at a node costs most, and 12 times a second is enough (ReadingSchedule): at each tick a part of the
@@ -26,10 +26,10 @@ namespace yuragi::scenes {
 ///
 /// The bound of a tick holds for this, too: a target goes from one end of its range to the other in 1/12 s at the
 /// soonest, so that the value's rate is at most twice the strongest wind times the mean of the filter's impulse
-/// response over the 1/12 s of its peak, 7.31 a second; of SceneWind it is the peak itself, 7.36.
+/// response over the 1/12 s of its peak, 7.31 a second; of Wind it is the peak itself, 7.36.
 ///
 /// So a place's wind is never stronger than kStrongestSceneWind_m_s, and changes in a tick by at most
-/// SceneWind::largest_step_m_s, whatever comes in. Nodes are half a metre apart in scenes of up to 31 m; in larger ones
+/// Wind::largest_step_m_s, whatever comes in. Nodes are half a metre apart in scenes of up to 31 m; in larger ones
 /// the longer side has 63. Waves that they cannot hold are left out (GustNodes). Allocates when it is made, never
 /// afterwards. Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 1.3 ns a node that is read and
 /// layer, which makes 24 us for all nodes of a meadow of 7 m (256) and 0.34 ms for one of 60 m, three fifths of it if
@@ -43,7 +43,7 @@ class WindGrid {
            std::span<const float> z_m, SimdRow row, double finest_cell_m = 0.5, std::size_t columns = 0);
 
   /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
-  void step(const wind::ground::GroundWind& wind, double dt_s) noexcept;
+  void step(const wind::ground::Wind& wind, double dt_s) noexcept;
 
   /// The wind at as many places as the outputs have, from place `first` on.
   void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
@@ -60,12 +60,12 @@ class WindGrid {
   struct Component {
     std::vector<float> value, target, rate_per_s;
     std::vector<float> next_target;  ///< where the target goes
-    noise::NoiseTile2 on_torus;      ///< the values, where places read them
+    noise::Tile2 on_torus;           ///< the values, where places read them
   };
 
   void approach_targets(double dt_s) noexcept;
-  void read(const wind::ground::GroundWind& wind, const ReadingSchedule::Due& due) noexcept;
-  void read_lines(const wind::ground::GroundWind& wind, const NodeRange& lines, double lead_s) noexcept;
+  void read(const wind::ground::Wind& wind, const ReadingSchedule::Due& due) noexcept;
+  void read_lines(const wind::ground::Wind& wind, const NodeRange& lines, double lead_s) noexcept;
   void follow(Component& component, double rate_rad_s, double dt_s) const noexcept;
   void read(const Component& component, std::size_t first, std::span<float> out) const noexcept;
 

@@ -22,7 +22,7 @@ struct SourceReport {
   double interval_s = 0.0;  ///< measured: between new readings; 0 before the second reading
   double age_s = 0.0;       ///< of its last reading
   bool is_overdue = false;  ///< live, but not by its interval: its silence is explained otherwise
-  std::optional<WindReading> last;
+  std::optional<Reading> last;
 };
 
 }  // namespace yuragi::wind

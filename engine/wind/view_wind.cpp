@@ -17,7 +17,7 @@ double within_circle_deg(double angle_deg) {
 
 ViewWind::ViewWind(double from_deg) noexcept : from_deg_(within_circle_deg(from_deg)) {}
 
-void ViewWind::advance(double dt_s, WindVector wind, bool is_live) noexcept {
+void ViewWind::advance(double dt_s, Vector wind, bool is_live) noexcept {
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) return;
   const bool is_start = age_s_ < kStart_s;
   if (is_start) age_s_ += dt_s;

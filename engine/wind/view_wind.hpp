@@ -23,14 +23,14 @@ class ViewWind {
   explicit ViewWind(double from_deg) noexcept;
 
   /// Advances by dt_s. Not live: the wind comes from no sensor.
-  void advance(double dt_s, WindVector wind, bool is_live) noexcept;
+  void advance(double dt_s, Vector wind, bool is_live) noexcept;
 
   /// Where the wind comes from, degrees clockwise from north, [0, 360).
   double from_deg() const noexcept { return from_deg_; }
 
  private:
   double from_deg_;
-  WindVector mean_;
+  Vector mean_;
   double live_s_ = 0.0;  // over which the mean goes, at most kMean_s
   double age_s_ = 0.0;   // at most a little above kStart_s
   bool is_turning_ = false;

@@ -15,7 +15,7 @@ enum class ReadingQuality : std::uint8_t {
 };
 
 /// One reading of a sensor, decoded, in SI units, before calibration. Finite and physical by the time it is published.
-struct WindReading {
+struct Reading {
   Instant time;            ///< when it arrived
   double speed_m_s = 0.0;  ///< at least 0
   std::optional<double>
@@ -32,9 +32,9 @@ struct WindReading {
 inline constexpr double kMaxPlausibleSpeed_m_s = 120.0;
 
 /// Is everything in the reading finite and within physical range?
-bool is_plausible(const WindReading& reading) noexcept;
+bool is_plausible(const Reading& reading) noexcept;
 
 /// Have both the same speed, direction and gust, bit for bit?
-bool says_the_same(const WindReading& a, const WindReading& b) noexcept;
+bool says_the_same(const Reading& a, const Reading& b) noexcept;
 
 }  // namespace yuragi::wind

@@ -8,17 +8,17 @@
 namespace yuragi::wind {
 
 /// Where the wind of a moment comes from.
-enum class WindSource : std::uint8_t {
+enum class Source : std::uint8_t {
   kDefault,   ///< no live sensor: the installation's default synthetic wind
   kHandover,  ///< on the way from one to the other
   kLive,      ///< a sensor
 };
 
 /// The wind that moves things, at one moment. Always finite, continuous in time.
-struct WindState {
+struct State {
   MonoTime time{};
-  WindVector wind;
-  WindSource source = WindSource::kDefault;
+  Vector wind;
+  Source source = Source::kDefault;
   double live_weight = 0.0;    ///< 0: all default wind; 1: all sensor
   double reading_age_s = 0.0;  ///< of the newest reading that took part; 0 where there was none
   /// This is the wind so far upwind of the middle of the scenes (below 0: downwind): at their windward edge, or where

@@ -25,10 +25,10 @@ constexpr double kMaxWind_m_s = 1e3;
 constexpr double kMaxWay_m = 1e6;
 constexpr double kMaxDuration_s = 1e12;
 
-bool read(const fb::Wind* from, wind::WindState& to) {
+bool read(const fb::Wind* from, wind::State& to) {
   if (from == nullptr || from->source() > fb::WindSource_MAX) return false;
   to.wind = {static_cast<double>(from->u_m_s()), static_cast<double>(from->v_m_s())};
-  to.source = static_cast<wind::WindSource>(from->source());
+  to.source = static_cast<wind::Source>(from->source());
   to.live_weight = static_cast<double>(from->live_weight());
   to.reading_age_s = static_cast<double>(from->reading_age_s());
   return is_within(to.wind.u_m_s, -kMaxWind_m_s, kMaxWind_m_s) &&
@@ -37,7 +37,7 @@ bool read(const fb::Wind* from, wind::WindState& to) {
 }
 
 /// A server that does not know of it sends none: then the wind is in the middle.
-bool read(const fb::WindPlace* from, wind::WindState& to) {
+bool read(const fb::WindPlace* from, wind::State& to) {
   if (from == nullptr) return true;
   to.upwind_m = static_cast<double>(from->upwind_m());
   to.to_middle_s = static_cast<double>(from->to_middle_s());
@@ -400,9 +400,9 @@ bool read(const fb::RawTrace& from, RawTrace& to) {
 }
 
 template <class T, class Table>
-Result<Message, WireError> read_body(const Table* table) {
+Result<Message, Error> read_body(const Table* table) {
   Message message(std::in_place_type<T>);
-  if (table == nullptr || !read(*table, std::get<T>(message))) return WireError::kInconsistent;
+  if (table == nullptr || !read(*table, std::get<T>(message))) return Error::kInconsistent;
   return message;
 }
 
@@ -416,10 +416,10 @@ flatbuffers::Verifier::Options verifier_options() {
 
 }  // namespace
 
-Result<Message, WireError> decode(std::span<const std::uint8_t> bytes) {
+Result<Message, Error> decode(std::span<const std::uint8_t> bytes) {
   // Room for the root's offset and the identifier, which FlatBuffers 2.0 reads before it looks at the length.
-  if (bytes.size() < 2 * sizeof(flatbuffers::uoffset_t)) return WireError::kNotVerified;
-  if (bytes.size() > kMaxServerMessageBytes) return WireError::kTooLong;
+  if (bytes.size() < 2 * sizeof(flatbuffers::uoffset_t)) return Error::kNotVerified;
+  if (bytes.size() > kMaxServerMessageBytes) return Error::kTooLong;
 
   // Alignment in a size-prefixed buffer counts from the prefix. A copy that has one, in aligned memory, can be verified
   // and read in place, wherever `bytes` came to lie.
@@ -429,7 +429,7 @@ Result<Message, WireError> decode(std::span<const std::uint8_t> bytes) {
   std::memcpy(buffer.get() + kSizePrefixBytes, bytes.data(), bytes.size());
 
   flatbuffers::Verifier verifier(buffer.get(), kSizePrefixBytes + bytes.size(), verifier_options());
-  if (!fb::VerifySizePrefixedMessageBuffer(verifier)) return WireError::kNotVerified;
+  if (!fb::VerifySizePrefixedMessageBuffer(verifier)) return Error::kNotVerified;
 
   const fb::Message& message = *fb::GetSizePrefixedMessage(buffer.get());
   switch (message.body_type()) {
@@ -454,7 +454,7 @@ Result<Message, WireError> decode(std::span<const std::uint8_t> bytes) {
     case fb::Body_NONE:
       break;
   }
-  return WireError::kUnknown;
+  return Error::kUnknown;
 }
 
 }  // namespace yuragi::wire

@@ -17,8 +17,8 @@ void MessageReader::feed(std::span<const std::uint8_t> bytes) {
   buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
 }
 
-std::optional<Result<Message, WireError>> MessageReader::next() {
-  if (broken_) return WireError::kTooLong;
+std::optional<Result<Message, Error>> MessageReader::next() {
+  if (broken_) return Error::kTooLong;
   const auto waiting = std::span<const std::uint8_t>(buffer_).subspan(consumed_);
   if (waiting.size() < kSizePrefixBytes) return std::nullopt;
 

@@ -30,7 +30,7 @@ class MessageReader {
   void feed(std::span<const std::uint8_t> bytes);
 
   /// The next whole message, or why it is not one; nothing where more bytes are needed.
-  std::optional<Result<Message, WireError>> next();
+  std::optional<Result<Message, Error>> next();
 
   /// Bytes that wait for the rest of their message.
   std::size_t buffered_bytes() const noexcept { return buffer_.size() - consumed_; }

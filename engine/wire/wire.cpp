@@ -4,15 +4,15 @@
 
 namespace yuragi::wire {
 
-std::string_view name_of(WireError error) {
+std::string_view name_of(Error error) {
   switch (error) {
-    case WireError::kTooLong:
+    case Error::kTooLong:
       return "too long";
-    case WireError::kNotVerified:
+    case Error::kNotVerified:
       return "not a Yuragi message";
-    case WireError::kUnknown:
+    case Error::kUnknown:
       return "of an unknown kind";
-    case WireError::kInconsistent:
+    case Error::kInconsistent:
       return "contradicts itself";
   }
   return "?";
@@ -25,11 +25,10 @@ std::optional<std::string> protocol_mismatch(const Hello& hello) {
   return speaks + (hello.protocol > kProtocol ? ": update this program" : ": update the daemon");
 }
 
-Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix,
-                                                std::size_t limit) {
+Result<std::size_t, Error> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix, std::size_t limit) {
   std::size_t length = 0;
   for (std::size_t i = 0; i < kSizePrefixBytes; ++i) length |= std::size_t{prefix[i]} << (8 * i);
-  if (length == 0 || length > limit) return WireError::kTooLong;
+  if (length == 0 || length > limit) return Error::kTooLong;
   return length;
 }
 

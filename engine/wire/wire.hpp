@@ -114,7 +114,7 @@ struct FrameInfo {
   std::uint64_t tick = 0;
   double time_s = 0.0;
   std::int64_t utc_ns = 0;
-  wind::WindState wind;                                     ///< its `time` does not travel
+  wind::State wind;                                         ///< its `time` does not travel
   std::optional<double> view_wind_from_deg = std::nullopt;  ///< what cameras with a wind_angle follow, [0, 360)
 };
 
@@ -213,7 +213,7 @@ struct AnimationStatus {
 
 struct Sensors {
   std::vector<SensorStatus> sensors;
-  wind::WindState wind;          ///< the real one; that of the frames is shaped
+  wind::State wind;              ///< the real one; that of the frames is shaped
   std::uint64_t late_ticks = 0;  ///< skipped since the daemon began
   std::uint32_t clients = 0;
   Shaping shaping = {};
@@ -328,15 +328,15 @@ struct Display {
 
 using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply, RawTrace, Display>;
 
-enum class WireError : std::uint8_t {
+enum class Error : std::uint8_t {
   kTooLong,       ///< the size prefix is above the limit
   kNotVerified,   ///< the FlatBuffers verifier refuses it
   kUnknown,       ///< a body of a newer protocol: skip it
   kInconsistent,  ///< verified, but lengths disagree or numbers are not finite
 };
-std::string_view name_of(WireError error);
+std::string_view name_of(Error error);
 
-[[noreturn]] inline void throw_exception_from_error(WireError error, const boost::source_location&) {
+[[noreturn]] inline void throw_exception_from_error(Error error, const boost::source_location&) {
   throw std::runtime_error("stream message refused: " + std::string(name_of(error)));
 }
 
@@ -371,12 +371,11 @@ class FrameEncoder {
 };
 
 /// The byte count that a size prefix announces, or kTooLong where it is above `limit` or zero.
-Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix,
-                                                std::size_t limit);
+Result<std::size_t, Error> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix, std::size_t limit);
 
 /// The message in `bytes` (without the size prefix; any alignment). Never reads outside them, whatever they hold. Texts
 /// come out as valid UTF-8 without control characters (make_printable()), so that they can go to a terminal or a log.
-Result<Message, WireError> decode(std::span<const std::uint8_t> bytes);
+Result<Message, Error> decode(std::span<const std::uint8_t> bytes);
 
 /// Do the frame's poses pair with the skeletons? Ask before kinematics: they are two messages, and only each is
 /// consistent. A hidden scene that came without its pose pairs with any skeleton.

@@ -10,7 +10,7 @@ namespace yuragi::workers {
 ///
 /// It tries the other way for kTrialTicks of each kCycleTicks and then keeps the one whose mean is smaller, so that
 /// a trial of the slower way costs less than a hundredth of the difference, and slows fewer than one tick in a hundred.
-/// It begins alone, with a trial after kTrialTicks. The choice changes no result (WorkerPool). Thread-safe: no.
+/// It begins alone, with a trial after kTrialTicks. The choice changes no result (Pool). Thread-safe: no.
 /// Realtime-safe: yes.
 class SharingChoice {
  public:

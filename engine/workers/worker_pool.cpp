@@ -8,10 +8,10 @@ namespace {
 /// Looks at a value before a thread sleeps: some hundreds of microseconds, by how long the processor pauses.
 constexpr int kSpins = 20'000;
 
-/// WorkerPool::next_part_: the bits of the part, and one more work.
+/// Pool::next_part_: the bits of the part, and one more work.
 constexpr std::uint32_t kPartMask = 0xFF;
 constexpr std::uint32_t kOneWork = kPartMask + 1;
-static_assert(WorkerPool::kMaxThreads <= kPartMask);
+static_assert(Pool::kMaxThreads <= kPartMask);
 
 /// Waits until `value` is no longer `old`, spinning first.
 template <class Value>
@@ -27,20 +27,20 @@ void wait_for_change(const std::atomic<Value>& value, Value old) noexcept {
 
 }  // namespace
 
-WorkerPool::WorkerPool(std::size_t threads)
+Pool::Pool(std::size_t threads)
     : size_(std::clamp<std::size_t>(threads, 1, kMaxThreads)), next_part_(static_cast<std::uint32_t>(size_)) {
   workers_.reserve(size_ - 1);
   for (std::size_t index = 1; index < size_; ++index) workers_.emplace_back([this] { serve(); });
 }
 
-WorkerPool::~WorkerPool() {
+Pool::~Pool() {
   is_ending_.store(true, std::memory_order_relaxed);
   next_part_.fetch_add(kOneWork, std::memory_order_release);  // a work whose parts are all taken
   next_part_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
 
-void WorkerPool::run_task(Task task, const void* work) noexcept {
+void Pool::run_task(Task task, const void* work) noexcept {
   if (workers_.empty()) return task(work, {});
   task_ = task;
   work_ = work;
@@ -57,7 +57,7 @@ void WorkerPool::run_task(Task task, const void* work) noexcept {
 }
 
 /// False if all parts are taken.
-bool WorkerPool::do_next_part() noexcept {
+bool Pool::do_next_part() noexcept {
   std::uint32_t next = next_part_.load(std::memory_order_acquire);
   do {
     if ((next & kPartMask) >= size_) return false;
@@ -67,7 +67,7 @@ bool WorkerPool::do_next_part() noexcept {
   return true;
 }
 
-void WorkerPool::serve() noexcept {
+void Pool::serve() noexcept {
   while (true) {
     const std::uint32_t seen = next_part_.load(std::memory_order_acquire);
     if (is_ending_.load(std::memory_order_relaxed)) return;

@@ -18,15 +18,15 @@ namespace yuragi::workers {
 /// microseconds, and then sleeps: in a loop of work without pauses no thread sleeps, and at 60 Hz none burns a core
 /// (waking the threads then costs some 50 us per tick). Thread-safe: no, one caller. Realtime-safe: run() neither
 /// allocates nor locks; it waits for the slowest part that another thread has begun.
-class WorkerPool {
+class Pool {
  public:
   static constexpr std::size_t kMaxThreads = 255;
 
   /// `threads`: how many share the work, the caller among them; 0 counts as 1, more than kMaxThreads as that.
-  explicit WorkerPool(std::size_t threads);
-  ~WorkerPool();
-  WorkerPool(const WorkerPool&) = delete;
-  WorkerPool& operator=(const WorkerPool&) = delete;
+  explicit Pool(std::size_t threads);
+  ~Pool();
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
 
   std::size_t size() const noexcept { return size_; }
 

@@ -14,7 +14,7 @@ class SyntheticPlayedWind final : public PlayedWind {
   explicit SyntheticPlayedWind(const wind::turbulence::SyntheticWindSettings& settings) : wind_(settings) {}
 
   PlayedMoment at(double time_s) override {
-    const wind::WindVector wind = wind_.at(time_s);
+    const wind::Vector wind = wind_.at(time_s);
     return {speed_of(wind), wind::direction_from_deg(wind)};
   }
 
@@ -24,12 +24,12 @@ class SyntheticPlayedWind final : public PlayedWind {
 
 class RecordedPlayedWind final : public PlayedWind {
  public:
-  explicit RecordedPlayedWind(drivers::windlog::WindlogPlayback playback)
+  explicit RecordedPlayedWind(drivers::windlog::Playback playback)
       : playback_(std::move(playback)), next_(playback_.next().value()) {}
 
   PlayedMoment at(double time_s) override {
     while (next_ && next_->log_time_s <= time_s) {
-      const wind::WindReading& reading = next_->reading;
+      const wind::Reading& reading = next_->reading;
       moment_ = {reading.speed_m_s, reading.direction_deg.value_or(moment_.direction_deg)};
       next_ = playback_.next().value();
     }
@@ -37,7 +37,7 @@ class RecordedPlayedWind final : public PlayedWind {
   }
 
  private:
-  drivers::windlog::WindlogPlayback playback_;
+  drivers::windlog::Playback playback_;
   std::optional<drivers::windlog::PlayedReading> next_;
   PlayedMoment moment_;
 };
@@ -50,7 +50,7 @@ std::unique_ptr<PlayedWind> play_synthetic_wind(const wind::turbulence::Syntheti
 
 std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file) {
   return std::make_unique<RecordedPlayedWind>(
-      drivers::windlog::WindlogPlayback::open(file, {.start = "", .loop = true, .sensor = ""}).value());
+      drivers::windlog::Playback::open(file, {.start = "", .loop = true, .sensor = ""}).value());
 }
 
 PlayedMoment MeasuredWind::at(double time_s, std::optional<FaultKind> fault) {

@@ -56,7 +56,7 @@ RecordedSensor parse_sensor(const std::string& text) {
   return sensor;
 }
 
-void write_readings(drivers::windlog::WindlogWriter& writer, std::vector<RecordedSensor>& sensors, MeasuredWind& wind,
+void write_readings(drivers::windlog::Writer& writer, std::vector<RecordedSensor>& sensors, MeasuredWind& wind,
                     Faults& faults, const RecordingOptions& options) {
   constexpr std::size_t kStepsPerCommit = 100'000;
   constexpr double kHour_s = 3600.0;
@@ -73,7 +73,7 @@ void write_readings(drivers::windlog::WindlogWriter& writer, std::vector<Recorde
     const PlayedMoment moment = wind.at(time_s, fault);
     if (fault == FaultKind::kSilence) continue;
     for (const RecordedSensor& sensor : sensors) {
-      wind::WindReading reading;
+      wind::Reading reading;
       reading.time = {start.mono + from_seconds(time_s), start.utc + from_seconds(time_s)};
       reading.speed_m_s = sensor.gain * moment.speed_m_s;
       reading.direction_deg = moment.direction_deg;
@@ -101,7 +101,7 @@ void make_recording(const RecordingOptions& options) {
   working += ".part";
   std::filesystem::remove(working);
   try {
-    auto writer = drivers::windlog::WindlogWriter::open(working).value();
+    auto writer = drivers::windlog::Writer::open(working).value();
     write_readings(writer, sensors, wind, faults, options);
     writer.close().value();
     drivers::windlog::remove_recording(file);  // with what SQLite left beside it: it would take that for the new one's

@@ -25,8 +25,8 @@ class PhasedWind final : public PlayedWind {
     const PlayedMoment before = phases_[current_ - 1].at(time_s);
     const double passed = passed_s / phase.ramp_s;
     const double share = passed * passed * (3.0 - 2.0 * passed);
-    const wind::WindVector mixed = (1.0 - share) * wind::wind_from(before.speed_m_s, before.direction_deg) +
-                                   share * wind::wind_from(moment.speed_m_s, moment.direction_deg);
+    const wind::Vector mixed = (1.0 - share) * wind::wind_from(before.speed_m_s, before.direction_deg) +
+                               share * wind::wind_from(moment.speed_m_s, moment.direction_deg);
     return {speed_of(mixed), wind::direction_from_deg(mixed)};
   }
 

@@ -8,7 +8,7 @@
 namespace yuragi::simulators::davis {
 namespace {
 
-struct DavisOptions {
+struct Options {
   text::SerialOrTcpOptions line;
   VantageConsoleOptions console;
   bool has_old_firmware = false;
@@ -28,7 +28,7 @@ struct DavisOptions {
 
 extern const core::Command kDavisCommand;
 const core::Command kDavisCommand{[](CLI::App& app) {
-  auto options = std::make_shared<DavisOptions>();
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("davis", "console of a Davis Vantage station, with its data logger");
   options->line.add_to(*command, "a server at HOST:PORT, like a WeatherLinkIP");
   command->add_option("--interval", options->console.interval_s, "seconds between packets")

@@ -51,7 +51,7 @@ void put_word(std::string& packet, std::size_t at, long value) {
 
 }  // namespace
 
-VantageConsole::VantageConsole(std::unique_ptr<text::TextWire> wire, const VantageConsoleOptions& options,
+VantageConsole::VantageConsole(std::unique_ptr<text::Wire> wire, const VantageConsoleOptions& options,
                                core::MeasuredWind wind)
     : wire_(std::move(wire)),
       options_(options),

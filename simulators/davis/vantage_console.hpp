@@ -29,9 +29,9 @@ struct VantageConsoleOptions {
 /// without a command. It knows the commands LOOP, LPS, EEBRD of the setup bits, and TEST.
 class VantageConsole final : public core::Simulator {
  public:
-  VantageConsole(std::unique_ptr<text::TextWire> wire, const VantageConsoleOptions& options, core::MeasuredWind wind);
+  VantageConsole(std::unique_ptr<text::Wire> wire, const VantageConsoleOptions& options, core::MeasuredWind wind);
 
-  const text::TextWire& wire() const noexcept { return *wire_; }
+  const text::Wire& wire() const noexcept { return *wire_; }
   /// Is it sending packets now? How many it was asked for and has not sent.
   int packets_left() const noexcept { return packets_left_; }
 
@@ -55,7 +55,7 @@ class VantageConsole final : public core::Simulator {
     std::string bytes;
   };
 
-  std::unique_ptr<text::TextWire> wire_;
+  std::unique_ptr<text::Wire> wire_;
   VantageConsoleOptions options_;
   core::MeasuredWind wind_;
   std::mt19937_64 random_;

@@ -20,7 +20,7 @@ constexpr double kLiveLate_s = 8.0;
 
 }  // namespace
 
-WeatherLinkLive::WeatherLinkLive(std::unique_ptr<text::TextWire> http, std::unique_ptr<text::TextWire> broadcasts,
+WeatherLinkLive::WeatherLinkLive(std::unique_ptr<text::Wire> http, std::unique_ptr<text::Wire> broadcasts,
                                  const WeatherLinkLiveOptions& options, core::MeasuredWind wind)
     : http_(std::move(http)),
       broadcasts_(std::move(broadcasts)),

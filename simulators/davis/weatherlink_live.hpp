@@ -26,10 +26,10 @@ struct WeatherLinkLiveOptions {
 /// HTTP, which replies with current conditions, and is asked there for broadcasts, which end by themselves.
 class WeatherLinkLive final : public core::Simulator {
  public:
-  WeatherLinkLive(std::unique_ptr<text::TextWire> http, std::unique_ptr<text::TextWire> broadcasts,
+  WeatherLinkLive(std::unique_ptr<text::Wire> http, std::unique_ptr<text::Wire> broadcasts,
                   const WeatherLinkLiveOptions& options, core::MeasuredWind wind);
 
-  const text::TextWire& http() const noexcept { return *http_; }
+  const text::Wire& http() const noexcept { return *http_; }
   /// How often it was asked for broadcasts.
   int broadcast_requests() const noexcept { return broadcast_requests_; }
   /// How long after the start its broadcasts end.
@@ -53,8 +53,8 @@ class WeatherLinkLive final : public core::Simulator {
     std::string bytes;
   };
 
-  std::unique_ptr<text::TextWire> http_;
-  std::unique_ptr<text::TextWire> broadcasts_;
+  std::unique_ptr<text::Wire> http_;
+  std::unique_ptr<text::Wire> broadcasts_;
   WeatherLinkLiveOptions options_;
   core::MeasuredWind wind_;
   std::mt19937_64 random_;

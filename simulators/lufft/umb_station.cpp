@@ -53,7 +53,7 @@ unsigned umb_crc(std::string_view bytes) {
 
 }  // namespace
 
-UmbStation::UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, core::MeasuredWind wind)
+UmbStation::UmbStation(std::unique_ptr<text::Wire> wire, const UmbStationOptions& options, core::MeasuredWind wind)
     : wire_(std::move(wire)),
       options_(options),
       wind_(std::move(wind)),

@@ -31,9 +31,9 @@ struct UmbStationOptions {
 /// manual, 6.1 to 6.14): it speaks when it is asked, by the commands 23h and 2Fh.
 class UmbStation final : public core::Simulator {
  public:
-  UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, core::MeasuredWind wind);
+  UmbStation(std::unique_ptr<text::Wire> wire, const UmbStationOptions& options, core::MeasuredWind wind);
 
-  const text::TextWire& wire() const noexcept { return *wire_; }
+  const text::Wire& wire() const noexcept { return *wire_; }
 
   std::span<const core::FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
@@ -55,7 +55,7 @@ class UmbStation final : public core::Simulator {
     std::string bytes;
   };
 
-  std::unique_ptr<text::TextWire> wire_;
+  std::unique_ptr<text::Wire> wire_;
   UmbStationOptions options_;
   core::MeasuredWind wind_;
   std::mt19937_64 random_;

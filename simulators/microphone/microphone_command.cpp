@@ -18,15 +18,15 @@ constexpr const char* kMicrophoneFooter =
     "  --out - --format s16 | aplay -D hw:0,0 -t raw -f S16_LE -r 48000 -c 1    a kernel's loop-back (snd-aloop)\n"
     "  --out wind.wav --duration 60                                            a sound file";
 
-struct MicrophoneCommandOptions {
-  MicrophoneOptions microphone;
-  MicrophoneOutputs outputs;
+struct CommandOptions {
+  Options microphone;
+  Outputs outputs;
   std::string file;
   std::string format = "float32";
   core::CommonOptions common;
 };
 
-void simulate_microphone(MicrophoneCommandOptions options) {
+void simulate_microphone(CommandOptions options) {
   options.microphone.seed = options.common.synthetic.seed;
   if (!options.file.empty()) {
     const double endless_s = 1e9;
@@ -36,7 +36,7 @@ void simulate_microphone(MicrophoneCommandOptions options) {
                           options.common.run.duration_s.value_or(options.file == "-" ? endless_s : 60.0));
     return;
   }
-  MicrophoneSimulator simulator(options.microphone, options.outputs, options.common.make_wind());
+  Simulator simulator(options.microphone, options.outputs, options.common.make_wind());
 
   // Scripts wait for this line.
   std::printf("sounding\n");
@@ -48,8 +48,8 @@ void simulate_microphone(MicrophoneCommandOptions options) {
 
 extern const core::Command kMicrophoneCommand;
 const core::Command kMicrophoneCommand{[](CLI::App& app) {
-  auto options = std::make_shared<MicrophoneCommandOptions>();
-  MicrophoneOptions& microphone = options->microphone;
+  auto options = std::make_shared<CommandOptions>();
+  Options& microphone = options->microphone;
   CLI::App* command = app.add_subcommand("microphone", "sound of wind in bare microphones, with voices and music");
   command->footer(kMicrophoneFooter);
   auto* socket = command->add_option("--listen", options->outputs.socket,

@@ -52,8 +52,7 @@ class SampleWriter {
 
 /// The canonical header of 44 bytes (Microsoft and IBM 1991, "Multimedia Programming Interface and Data
 /// Specifications").
-void put_wav_header(SampleWriter& out, SampleFormat format, const MicrophoneOptions& options,
-                    std::uint32_t data_bytes) {
+void put_wav_header(SampleWriter& out, SampleFormat format, const Options& options, std::uint32_t data_bytes) {
   const std::uint32_t sample_bytes = format == SampleFormat::kFloat32 ? 4 : 2;
   const auto channels = static_cast<std::uint32_t>(options.channels);
   const auto rate = static_cast<std::uint32_t>(std::lround(options.rate_hz));
@@ -73,7 +72,7 @@ void put_wav_header(SampleWriter& out, SampleFormat format, const MicrophoneOpti
 
 }  // namespace
 
-void write_microphone_file(const std::string& path, SampleFormat format, const MicrophoneOptions& options,
+void write_microphone_file(const std::string& path, SampleFormat format, const Options& options,
                            core::MeasuredWind wind, const core::Faults& faults, double duration_s) {
   const bool is_stdout = path == "-";
   std::signal(SIGPIPE, SIG_IGN);
@@ -90,7 +89,7 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
     put_wav_header(out, format, options, static_cast<std::uint32_t>(bytes));
   }
 
-  MicrophoneSound sound(options);
+  Sound sound(options);
   std::vector<float> samples;
   const auto step = static_cast<std::uint64_t>(std::max(1.0, kStep_s * options.rate_hz));
   for (std::uint64_t done = 0; done < frames;) {

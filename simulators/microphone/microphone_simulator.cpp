@@ -59,10 +59,10 @@ int listen_on(const std::string& path) {
 
 }  // namespace
 
-struct MicrophoneSimulator::State {
-  MicrophoneOptions options;
-  MicrophoneOutputs outputs;
-  MicrophoneSound sound;
+struct Simulator::State {
+  Options options;
+  Outputs outputs;
+  Sound sound;
   core::MeasuredWind wind;
   core::PlayedMoment moment;
   std::optional<core::FaultKind> fault;
@@ -72,7 +72,7 @@ struct MicrophoneSimulator::State {
   double rendered_s = 0.0;
   std::vector<float> samples;
 
-  State(const MicrophoneOptions& chosen, MicrophoneOutputs where, core::MeasuredWind measured)
+  State(const Options& chosen, Outputs where, core::MeasuredWind measured)
       : options(chosen), outputs(std::move(where)), sound(chosen), wind(std::move(measured)) {}
   ~State() { drop(true); }
 
@@ -115,8 +115,7 @@ struct MicrophoneSimulator::State {
   }
 };
 
-MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs,
-                                         core::MeasuredWind wind)
+Simulator::Simulator(const Options& options, Outputs outputs, core::MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(outputs), std::move(wind))) {
   std::signal(SIGPIPE, SIG_IGN);  // a client that closes its socket must not end the program
   state_->plug_in();
@@ -126,7 +125,7 @@ MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, Micro
   }
 }
 
-MicrophoneSimulator::~MicrophoneSimulator() = default;
+Simulator::~Simulator() = default;
 
 std::span<const core::FaultKind> microphone_faults() {
   static constexpr std::array kKnown = {
@@ -135,15 +134,15 @@ std::span<const core::FaultKind> microphone_faults() {
   return kKnown;
 }
 
-std::span<const core::FaultKind> MicrophoneSimulator::known_faults() const {
+std::span<const core::FaultKind> Simulator::known_faults() const {
   return microphone_faults();
 }
 
-std::vector<int> MicrophoneSimulator::descriptors() const {
+std::vector<int> Simulator::descriptors() const {
   return state_->listener >= 0 ? std::vector{state_->listener} : std::vector<int>();
 }
 
-void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
+void Simulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   State& state = *state_;
   state.fault = fault;
   state.moment = state.wind.at(time_s, fault);
@@ -176,7 +175,7 @@ void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::
   if (state.pipe.descriptor >= 0 && !state.give(state.pipe)) close_microphone_socket(state.pipe.descriptor);
 }
 
-std::string MicrophoneSimulator::status() const {
+std::string Simulator::status() const {
   const State& state = *state_;
   return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}{}{}", state.moment.speed_m_s, state.moment.direction_deg,
                      count_text(state.clients.size() + (state.pipe.descriptor >= 0 ? 1U : 0U), "listener"),

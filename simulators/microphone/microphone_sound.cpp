@@ -24,8 +24,8 @@ double amplitude_of(double level_db) {
   return std::pow(10.0, level_db / 20.0);
 }
 
-noise::NoiseTile1 make_wind_noise(double rate_hz, std::uint64_t seed) {
-  noise::NoiseSpec spec;
+noise::Tile1 make_wind_noise(double rate_hz, std::uint64_t seed) {
+  noise::Spec spec;
   spec.size = 1024;
   while (static_cast<double>(spec.size) < kTile_s * rate_hz && spec.size < noise::kMaxNoiseSize1) spec.size *= 2;
   spec.beta = kPressureSlope;
@@ -37,7 +37,7 @@ noise::NoiseTile1 make_wind_noise(double rate_hz, std::uint64_t seed) {
 
 }  // namespace
 
-MicrophoneSound::MicrophoneSound(const MicrophoneOptions& options) : options_(options), random_(options.seed) {
+Sound::Sound(const Options& options) : options_(options), random_(options.seed) {
   if (options.channels < 1 || options.channels > kMicrophoneMaxChannels || !(options.rate_hz >= 100.0)) {
     throw std::invalid_argument("a simulated microphone has 1 to 4 channels and at least 100 Hz");
   }
@@ -46,7 +46,7 @@ MicrophoneSound::MicrophoneSound(const MicrophoneOptions& options) : options_(op
   }
 }
 
-MicrophoneSound::Amplitudes MicrophoneSound::amplitudes_of(const core::PlayedMoment& moment) const {
+Sound::Amplitudes Sound::amplitudes_of(const core::PlayedMoment& moment) const {
   Amplitudes amplitudes{};
   for (std::size_t channel = 0; channel < options_.channels; ++channel) {
     double speed_m_s = moment.speed_m_s;
@@ -61,7 +61,7 @@ MicrophoneSound::Amplitudes MicrophoneSound::amplitudes_of(const core::PlayedMom
 }
 
 /// Vowels of a low voice in syllables of a quarter of a second, three and a half seconds of every five.
-double MicrophoneSound::voice_at(double time_s) {
+double Sound::voice_at(double time_s) {
   constexpr int kHarmonics = 10;
   constexpr double kVoiceScale = 1.45;  // to a root mean square of about 1
   const double pitch_hz = 120.0 + 25.0 * std::sin(kTurn * 0.7 * time_s);
@@ -75,7 +75,7 @@ double MicrophoneSound::voice_at(double time_s) {
 }
 
 /// A chord of three over a bass, another every two seconds.
-double MicrophoneSound::music_at(double time_s) const {
+double Sound::music_at(double time_s) const {
   constexpr std::array kRoots_hz = {41.2, 55.0, 49.0, 36.7};
   constexpr std::array kParts = {1.0, 1.25, 1.5, 2.0};
   const double root_hz = kRoots_hz[static_cast<std::size_t>(time_s / 2.0) % kRoots_hz.size()];
@@ -84,8 +84,8 @@ double MicrophoneSound::music_at(double time_s) const {
   return sum / std::sqrt(0.5 * kParts.size());
 }
 
-void MicrophoneSound::render(const core::PlayedMoment& moment, std::size_t frames, std::optional<core::FaultKind> fault,
-                             std::vector<float>& out) {
+void Sound::render(const core::PlayedMoment& moment, std::size_t frames, std::optional<core::FaultKind> fault,
+                   std::vector<float>& out) {
   const std::size_t channels = options_.channels;
   const auto second = static_cast<std::size_t>(options_.rate_hz);
   if (fault == core::FaultKind::kFreeze && !last_second_.empty()) {

@@ -16,7 +16,7 @@ namespace yuragi::simulators::microphone {
 inline constexpr std::size_t kMicrophoneMaxChannels = 4;
 
 /// Microphones in the wind, and how they respond to it. Levels are root mean squares in dB re full scale.
-struct MicrophoneOptions {
+struct Options {
   std::size_t channels = 1;  ///< 1 to kMicrophoneMaxChannels
   double rate_hz = 48000.0;
   double exponent = 2.0;             ///< the root mean square grows with the wind to this power
@@ -33,10 +33,10 @@ struct MicrophoneOptions {
 /// above 5 Hz (Raspet, Webster and Dillion 2006, "Framework for wind noise studies"), so that it is independent at two
 /// microphones. Voices and music reach all of them alike. What exceeds full scale is clipped, as by a converter. The
 /// same options give the same sound, bit for bit. Thread-safe: no.
-class MicrophoneSound {
+class Sound {
  public:
   /// Throws std::invalid_argument for options out of range.
-  explicit MicrophoneSound(const MicrophoneOptions& options);
+  explicit Sound(const Options& options);
 
   /// Adds `frames` frames to `out`, a sample a channel, while the wind changes evenly to `moment`. kFreeze repeats the
   /// last second, kGarbage is noise at full scale; faults of the wind itself are the caller's.
@@ -50,8 +50,8 @@ class MicrophoneSound {
   double voice_at(double time_s);
   double music_at(double time_s) const;
 
-  MicrophoneOptions options_;
-  std::vector<noise::NoiseTile1> wind_;  ///< of each channel
+  Options options_;
+  std::vector<noise::Tile1> wind_;  ///< of each channel
   std::mt19937_64 random_;
   Amplitudes amplitudes_{};
   double voice_phase_ = 0.0;

@@ -13,20 +13,20 @@
 namespace yuragi::simulators::modbus {
 namespace {
 
-struct ModbusOptions {
+struct Options {
   std::string tcp = "127.0.0.1:1502";
   bool is_rtu = false;
   std::string link;
   std::vector<std::string> devices;
   std::optional<int> fault_id;
-  double late_s = ModbusFaultOptions{}.late_s;
+  double late_s = FaultOptions{}.late_s;
   core::CommonOptions common;
 };
 
 /// The slaves of all devices. Throws CLI::ValidationError for an unknown device.
-std::vector<ModbusSlave> slaves_of(std::vector<std::string> devices) {
+std::vector<Slave> slaves_of(std::vector<std::string> devices) {
   if (devices.empty()) devices.emplace_back("renke-rs-fsjt-rs-fxjt-n01");
-  std::vector<ModbusSlave> slaves;
+  std::vector<Slave> slaves;
   try {
     for (const std::string& device : devices) {
       const auto more = modbus_slaves(device);
@@ -38,18 +38,18 @@ std::vector<ModbusSlave> slaves_of(std::vector<std::string> devices) {
   return slaves;
 }
 
-void simulate_modbus(const ModbusOptions& options) {
-  const std::vector<ModbusSlave> slaves = slaves_of(options.devices);
-  std::unique_ptr<ModbusPort> port;
+void simulate_modbus(const Options& options) {
+  const std::vector<Slave> slaves = slaves_of(options.devices);
+  std::unique_ptr<Port> port;
   if (options.is_rtu) {
     port = make_modbus_rtu_port(options.link);
   } else {
     const Address address = core::address_option("--tcp", options.tcp);
     port = make_modbus_tcp_port(address.host, address.port);
   }
-  ModbusFaultOptions faults{.id = std::nullopt, .late_s = options.late_s, .seed = options.common.synthetic.seed};
+  FaultOptions faults{.id = std::nullopt, .late_s = options.late_s, .seed = options.common.synthetic.seed};
   if (options.fault_id) faults.id = static_cast<std::uint8_t>(*options.fault_id);
-  ModbusSimulator simulator(slaves, std::move(port), options.common.make_wind(), faults);
+  Simulator simulator(slaves, std::move(port), options.common.make_wind(), faults);
 
   // Scripts wait for this line.
   std::printf("%s %s\n", options.is_rtu ? "serving" : "listening on", simulator.name().c_str());
@@ -61,7 +61,7 @@ void simulate_modbus(const ModbusOptions& options) {
 
 extern const core::Command kModbusCommand;
 const core::Command kModbusCommand{[](CLI::App& app) {
-  auto options = std::make_shared<ModbusOptions>();
+  auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("modbus", "Modbus line, over TCP or serial (RTU), with the registers of real wind sensors");
   CLI::Option* tcp = command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one");

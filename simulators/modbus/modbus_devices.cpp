@@ -28,30 +28,30 @@ double compass_point_of(double direction_deg, int points) {
 }
 
 /// Renke RS-FSJT-N01 (and the clones that copy it): 0x0000 speed, 0.1 m/s.
-void measure_cup(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_cup(const Air& air, RegisterBank& registers) {
   registers.set(0x0000, kTenths * air.speed_m_s);
 }
 
 /// Renke RS-FXJT-N01: 0x0000 eight points, 0x0001 degrees.
-void measure_renke_vane(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_renke_vane(const Air& air, RegisterBank& registers) {
   registers.set(0x0000, compass_point_of(air.direction_deg, 8));
   registers.set(0x0001, air.direction_deg);
 }
 
 /// DFRobot SEN0482 V2: 0x0000 tenths of degrees, 0x0001 sixteen points.
-void measure_sen0482(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_sen0482(const Air& air, RegisterBank& registers) {
   registers.set(0x0000, kTenths * air.direction_deg);
   registers.set(0x0001, compass_point_of(air.direction_deg, 16));
 }
 
 /// DFRobot SEN0482 V1: 0x0000 sixteen points.
-void measure_sen0482_v1(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_sen0482_v1(const Air& air, RegisterBank& registers) {
   registers.set(0x0000, compass_point_of(air.direction_deg, 16));
 }
 
 /// Renke multi-station: 500 speed, 501 Beaufort, 502 eight points, 503 degrees, 504 humidity, 505 temperature, 506 to
 /// 508 noise and dust, 509 pressure, 510 to 512 light, 513 rain.
-void measure_multi_station(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_multi_station(const Air& air, RegisterBank& registers) {
   registers.set(500, kTenths * air.speed_m_s);
   registers.set(501, beaufort_of(air.speed_m_s));
   registers.set(502, compass_point_of(air.direction_deg, 8));
@@ -64,20 +64,20 @@ void measure_multi_station(const ModbusAir& air, ModbusRegisterBank& registers) 
 }
 
 /// The same of makers who write hundredths.
-void measure_multi_station_x100(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_multi_station_x100(const Air& air, RegisterBank& registers) {
   measure_multi_station(air, registers);
   registers.set(500, 100.0 * air.speed_m_s);
 }
 
 /// SEN0657: the wind force is not among its documented registers.
-void measure_sen0657(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_sen0657(const Air& air, RegisterBank& registers) {
   measure_multi_station(air, registers);
   registers.set(501, 0.0);
 }
 
 /// WN90LP: from 0x0160 model, baud rate, id, serial number; from 0x0165 light, UV, temperature with 400 added,
 /// humidity, speed, gust, direction, rain, pressure, rain in hundredths.
-void measure_wn90lp(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_wn90lp(const Air& air, RegisterBank& registers) {
   registers.set(0x0160, 0x90);
   registers.set(0x0161, 2);
   registers.set(0x0162, 0x90);
@@ -97,7 +97,7 @@ void measure_wn90lp(const ModbusAir& air, ModbusRegisterBank& registers) {
 
 /// SenseCAP ONE: 0x0000 temperature, 0x0002 humidity, 0x0004 pressure in Pa; from 0x0008 direction, from 0x000E speed,
 /// each least, most, mean; thousandths.
-void measure_sensecap(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_sensecap(const Air& air, RegisterBank& registers) {
   constexpr double kThousandths = 1000.0;
   registers.set_two(0x0000, kThousandths * air.temperature_c);
   registers.set_two(0x0002, kThousandths * air.humidity_percent);
@@ -110,7 +110,7 @@ void measure_sensecap(const ModbusAir& air, ModbusRegisterBank& registers) {
 }
 
 /// Calypso ULP: 200 status; 201 and 202 speed and direction; means of 2 and 10 min; 207 and 208 gust and its direction.
-void measure_calypso(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_calypso(const Air& air, RegisterBank& registers) {
   registers.set(200, 0.0);
   for (int i = 201; i <= 207; i += 2) {
     const double speed_m_s = i == 201 ? air.speed_m_s : i == 207 ? air.gust_m_s : air.mean_m_s;
@@ -121,7 +121,7 @@ void measure_calypso(const ModbusAir& air, ModbusRegisterBank& registers) {
 
 /// Lufft UMB: from 10 humidity, from 14 pressure, from 18 direction, 31 temperature; speed: 42 actual, 43 least, 44
 /// most, 45 mean, 46 vectorial mean, 47 fast. It has all of 0 to 124; what this model does not measure is an error.
-void measure_lufft(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_lufft(const Air& air, RegisterBank& registers) {
   for (int i = 0; i <= 124; ++i) registers.set(i, 0x7FFF);
   for (int i = 10; i <= 13; ++i) registers.set(i, kTenths * air.humidity_percent);
   for (int i = 14; i <= 17; ++i) registers.set(i, kTenths * air.pressure_hpa);
@@ -137,7 +137,7 @@ void measure_lufft(const ModbusAir& air, ModbusRegisterBank& registers) {
 
 /// WM80: floats, their low words first; speed and direction in turn: sample, instant, mean; lull; gust; direction of
 /// the mean, of the gust.
-void measure_wm80(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_wm80(const Air& air, RegisterBank& registers) {
   for (int i = 0x0000; i <= 0x0008; i += 4) {
     registers.set_float_low_word_first(i, i == 0x0008 ? air.mean_m_s : air.speed_m_s);
     registers.set_float_low_word_first(i + 2, air.direction_deg);
@@ -149,7 +149,7 @@ void measure_wm80(const ModbusAir& air, ModbusRegisterBank& registers) {
 }
 
 /// MaxiMet GMX: 40001 node letter, 40003 DIR, 40005 SPEED, 40007 CDIR, less 40001 each.
-void measure_gmx(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_gmx(const Air& air, RegisterBank& registers) {
   registers.set_float(0, 'Q');
   registers.set_float(2, air.direction_deg);
   registers.set_float(4, air.speed_m_s);
@@ -157,13 +157,13 @@ void measure_gmx(const ModbusAir& air, ModbusRegisterBank& registers) {
 }
 
 /// MetSENS200: 40001 DIR, 40003 SPEED.
-void measure_metsens(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_metsens(const Air& air, RegisterBank& registers) {
   registers.set_float(0, air.direction_deg);
   registers.set_float(2, air.speed_m_s);
 }
 
 /// Lambrecht: from 30001 speed now, mean, most, least.
-void measure_lambrecht_cup(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_lambrecht_cup(const Air& air, RegisterBank& registers) {
   registers.set(30001, kTenths * air.speed_m_s);
   registers.set(30002, kTenths * air.mean_m_s);
   registers.set(30003, kTenths * air.gust_m_s);
@@ -171,13 +171,13 @@ void measure_lambrecht_cup(const ModbusAir& air, ModbusRegisterBank& registers) 
 }
 
 /// Lambrecht: from 30201 direction now, mean, most, least.
-void measure_lambrecht_vane(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_lambrecht_vane(const Air& air, RegisterBank& registers) {
   for (int i = 30201; i <= 30204; ++i) registers.set(i, kTenths * air.direction_deg);
 }
 
 /// Thies: 30001 speed now, 30003 mean, 30011 gust; 30203 direction, 30211 that of the gust; 30401 temperature, 30601
 /// humidity, 30801 pressure in hundredths; two registers each.
-void measure_thies(const ModbusAir& air, ModbusRegisterBank& registers) {
+void measure_thies(const Air& air, RegisterBank& registers) {
   registers.set_two(30001, kTenths * air.speed_m_s);
   registers.set_two(30003, kTenths * air.speed_m_s);
   registers.set_two(30011, kTenths * air.gust_m_s);
@@ -188,30 +188,30 @@ void measure_thies(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set_two(30801, 100.0 * air.pressure_hpa);
 }
 
-constexpr std::array kRenkeCup = {ModbusSlave{1, 3, measure_cup}};
-constexpr std::array kRenkePair = {ModbusSlave{1, 3, measure_cup}, ModbusSlave{2, 3, measure_renke_vane}};
-constexpr std::array kDfrobotCup = {ModbusSlave{2, 3, measure_cup}};
-constexpr std::array kDfrobotPair = {ModbusSlave{2, 3, measure_cup}, ModbusSlave{3, 3, measure_sen0482}};
-constexpr std::array kDfrobotPairV1 = {ModbusSlave{2, 3, measure_cup}, ModbusSlave{3, 3, measure_sen0482_v1}};
-constexpr std::array kMultiStation = {ModbusSlave{1, 3, measure_multi_station}};
-constexpr std::array kMultiStationX100 = {ModbusSlave{1, 3, measure_multi_station_x100}};
-constexpr std::array kSen0657 = {ModbusSlave{1, 3, measure_sen0657}};
-constexpr std::array kWn90lp = {ModbusSlave{0x90, 3, measure_wn90lp}};
-constexpr std::array kSensecap = {ModbusSlave{1, 4, measure_sensecap}};
-constexpr std::array kCalypso = {ModbusSlave{1, 3, measure_calypso}};
-constexpr std::array kLufft = {ModbusSlave{1, 4, measure_lufft}};
-constexpr std::array kWm80 = {ModbusSlave{1, 3, measure_wm80}};
-constexpr std::array kGmx = {ModbusSlave{1, 3, measure_gmx}};
-constexpr std::array kMetsens = {ModbusSlave{1, 3, measure_metsens}};
-constexpr std::array kLambrecht = {ModbusSlave{1, 4, measure_lambrecht_cup, 30002},
-                                   ModbusSlave{2, 4, measure_lambrecht_vane, 30202}};
-constexpr std::array kThies = {ModbusSlave{1, 4, measure_thies}};
-constexpr std::array kVane = {ModbusSlave{1, 3, measure_renke_vane}};
-constexpr std::array kDfrobotVane = {ModbusSlave{2, 3, measure_sen0482}};
+constexpr std::array kRenkeCup = {Slave{1, 3, measure_cup}};
+constexpr std::array kRenkePair = {Slave{1, 3, measure_cup}, Slave{2, 3, measure_renke_vane}};
+constexpr std::array kDfrobotCup = {Slave{2, 3, measure_cup}};
+constexpr std::array kDfrobotPair = {Slave{2, 3, measure_cup}, Slave{3, 3, measure_sen0482}};
+constexpr std::array kDfrobotPairV1 = {Slave{2, 3, measure_cup}, Slave{3, 3, measure_sen0482_v1}};
+constexpr std::array kMultiStation = {Slave{1, 3, measure_multi_station}};
+constexpr std::array kMultiStationX100 = {Slave{1, 3, measure_multi_station_x100}};
+constexpr std::array kSen0657 = {Slave{1, 3, measure_sen0657}};
+constexpr std::array kWn90lp = {Slave{0x90, 3, measure_wn90lp}};
+constexpr std::array kSensecap = {Slave{1, 4, measure_sensecap}};
+constexpr std::array kCalypso = {Slave{1, 3, measure_calypso}};
+constexpr std::array kLufft = {Slave{1, 4, measure_lufft}};
+constexpr std::array kWm80 = {Slave{1, 3, measure_wm80}};
+constexpr std::array kGmx = {Slave{1, 3, measure_gmx}};
+constexpr std::array kMetsens = {Slave{1, 3, measure_metsens}};
+constexpr std::array kLambrecht = {Slave{1, 4, measure_lambrecht_cup, 30002},
+                                   Slave{2, 4, measure_lambrecht_vane, 30202}};
+constexpr std::array kThies = {Slave{1, 4, measure_thies}};
+constexpr std::array kVane = {Slave{1, 3, measure_renke_vane}};
+constexpr std::array kDfrobotVane = {Slave{2, 3, measure_sen0482}};
 
 struct DeviceEntry {
   std::string_view name;
-  std::span<const ModbusSlave> slaves;
+  std::span<const Slave> slaves;
 };
 constexpr std::array<DeviceEntry, 21> kModbusDevices = {{
     {"renke-rs-fsjt-rs-fxjt-n01", kRenkePair},
@@ -248,29 +248,29 @@ int slave_id_in(std::string_view text) {
 
 }  // namespace
 
-void ModbusRegisterBank::set(int address, double value) {
+void RegisterBank::set(int address, double value) {
   set_bits(address, static_cast<std::uint16_t>(std::lround(value)));
 }
 
-void ModbusRegisterBank::set_two(int address, double value) {
+void RegisterBank::set_two(int address, double value) {
   const auto bits = static_cast<std::uint32_t>(std::lround(value));
   set_bits(address, static_cast<std::uint16_t>(bits >> 16U));
   set_bits(address + 1, static_cast<std::uint16_t>(bits & 0xFFFFU));
 }
 
-void ModbusRegisterBank::set_float(int address, double value) {
+void RegisterBank::set_float(int address, double value) {
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
   set_bits(address, static_cast<std::uint16_t>(bits >> 16U));
   set_bits(address + 1, static_cast<std::uint16_t>(bits & 0xFFFFU));
 }
 
-void ModbusRegisterBank::set_float_low_word_first(int address, double value) {
+void RegisterBank::set_float_low_word_first(int address, double value) {
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
   set_bits(address, static_cast<std::uint16_t>(bits & 0xFFFFU));
   set_bits(address + 1, static_cast<std::uint16_t>(bits >> 16U));
 }
 
-std::optional<std::uint16_t> ModbusRegisterBank::at(std::uint16_t address) const {
+std::optional<std::uint16_t> RegisterBank::at(std::uint16_t address) const {
   const auto found = registers_.find(address);
   return found != registers_.end() ? std::optional(found->second) : std::nullopt;
 }
@@ -282,7 +282,7 @@ std::vector<std::string> modbus_device_names() {
   return names;
 }
 
-std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id) {
+std::vector<Slave> modbus_slaves(std::string_view name_and_id) {
   const std::size_t at = name_and_id.find('@');
   const std::string_view name = name_and_id.substr(0, at);
   const auto device = std::ranges::find(kModbusDevices, name, &DeviceEntry::name);
@@ -290,7 +290,7 @@ std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id) {
     throw std::runtime_error(
         fmt::format("no simulated Modbus device \"{}\"; known: {}", name, fmt::join(modbus_device_names(), ", ")));
   }
-  std::vector<ModbusSlave> slaves(device->slaves.begin(), device->slaves.end());
+  std::vector<Slave> slaves(device->slaves.begin(), device->slaves.end());
   if (at == std::string_view::npos) return slaves;
 
   const int first = slave_id_in(name_and_id.substr(at + 1));

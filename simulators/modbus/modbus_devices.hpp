@@ -12,7 +12,7 @@
 namespace yuragi::simulators::modbus {
 
 /// The wind, as devices report it.
-struct ModbusAir {
+struct Air {
   double speed_m_s = 0.0;
   double direction_deg = 0.0;  ///< where it comes from
   double gust_m_s = 0.0;       ///< the strongest of the last seconds
@@ -26,7 +26,7 @@ struct ModbusAir {
 };
 
 /// The content of a device's registers: 16 bits for each address, as on the wire.
-class ModbusRegisterBank {
+class RegisterBank {
  public:
   void set(int address, double value);        ///< as a whole number of 16 bits, negative ones in two's complement
   void set_two(int address, double value);    ///< as a whole number of 32 bits in two registers, the high one first
@@ -42,10 +42,10 @@ class ModbusRegisterBank {
 };
 
 /// One slave of a simulated bus.
-struct ModbusSlave {
+struct Slave {
   std::uint8_t id = 1;        ///< from the factory
   std::uint8_t function = 3;  ///< the only one that it supports: 3 or 4
-  void (*measure)(const ModbusAir& air, ModbusRegisterBank& registers) = nullptr;
+  void (*measure)(const Air& air, RegisterBank& registers) = nullptr;
   /// A register whose reading clears lull, mean and gust; 0 if there is none.
   std::uint16_t clearing_register = 0;
 };
@@ -55,6 +55,6 @@ std::vector<std::string> modbus_device_names();
 
 /// The slaves of a device: "NAME", or "NAME@ID" with the id of its first one; those of a device of several follow it.
 /// Throws std::runtime_error for an unknown name and for an id that no slave can have.
-std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id);
+std::vector<Slave> modbus_slaves(std::string_view name_and_id);
 
 }  // namespace yuragi::simulators::modbus

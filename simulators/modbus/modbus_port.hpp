@@ -11,7 +11,7 @@
 namespace yuragi::simulators::modbus {
 
 /// The connection of a simulated Modbus bus: a TCP port or a serial one.
-class ModbusPort {
+class Port {
  public:
   /// A request, and which client sent it.
   struct ClientRequest {
@@ -19,7 +19,7 @@ class ModbusPort {
     SlaveRequest request;
   };
 
-  virtual ~ModbusPort() = default;
+  virtual ~Port() = default;
 
   virtual bool is_rtu() const = 0;
   /// For others to open: "127.0.0.1:1502", "/dev/pts/3".
@@ -39,9 +39,9 @@ class ModbusPort {
 
 /// Listens at once; port 0 takes a free one. Serves any number of clients. Throws std::runtime_error for an address
 /// that cannot be listened on.
-std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::uint16_t port);
+std::unique_ptr<Port> make_modbus_tcp_port(const std::string& host, std::uint16_t port);
 
 /// A pseudo terminal, and, if it is not empty, a `link` to it. Throws std::system_error.
-std::unique_ptr<ModbusPort> make_modbus_rtu_port(const std::string& link);
+std::unique_ptr<Port> make_modbus_rtu_port(const std::string& link);
 
 }  // namespace yuragi::simulators::modbus

@@ -11,7 +11,7 @@ constexpr std::size_t kMaxTcpBody = 254;
 constexpr std::size_t kMinRtu = 4;
 constexpr std::size_t kMaxRtu = 256;
 
-std::uint16_t word_at(const ModbusBytes& bytes, std::size_t at) {
+std::uint16_t word_at(const Bytes& bytes, std::size_t at) {
   return at + 1 < bytes.size() ? static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]) : std::uint16_t{0};
 }
 
@@ -34,7 +34,7 @@ std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
 }
 
 /// The length of a request of this function on a serial line, CRC included; 0 if that is not known yet.
-std::size_t rtu_length(const ModbusBytes& bytes) {
+std::size_t rtu_length(const Bytes& bytes) {
   constexpr std::size_t kFixed = 8;
   constexpr std::uint8_t kWriteCoils = 15;
   constexpr std::uint8_t kWriteRegisters = 16;
@@ -45,7 +45,7 @@ std::size_t rtu_length(const ModbusBytes& bytes) {
 
 }  // namespace
 
-std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming) {
+std::optional<SlaveRequest> take_tcp_request(Bytes& incoming) {
   if (incoming.size() < kTcpHeader) return std::nullopt;
   const std::size_t length = word_at(incoming, 4);
   if (word_at(incoming, 2) != 0 || length < 2 || length > kMaxTcpBody) {
@@ -62,7 +62,7 @@ std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming) {
   return request;
 }
 
-std::optional<SlaveRequest> take_rtu_request(ModbusBytes& incoming) {
+std::optional<SlaveRequest> take_rtu_request(Bytes& incoming) {
   while (incoming.size() >= kMinRtu) {
     const std::size_t length = rtu_length(incoming);
     if (length == 0) return std::nullopt;
@@ -83,8 +83,8 @@ std::optional<SlaveRequest> take_rtu_request(ModbusBytes& incoming) {
   return std::nullopt;
 }
 
-ModbusBytes registers_reply(std::uint8_t function, std::span<const std::uint16_t> registers) {
-  ModbusBytes reply = {function, static_cast<std::uint8_t>(2 * registers.size())};
+Bytes registers_reply(std::uint8_t function, std::span<const std::uint16_t> registers) {
+  Bytes reply = {function, static_cast<std::uint8_t>(2 * registers.size())};
   for (const std::uint16_t value : registers) {
     reply.push_back(static_cast<std::uint8_t>(value >> 8U));
     reply.push_back(static_cast<std::uint8_t>(value & 0xFFU));
@@ -92,21 +92,20 @@ ModbusBytes registers_reply(std::uint8_t function, std::span<const std::uint16_t
   return reply;
 }
 
-ModbusBytes exception_reply(std::uint8_t function, std::uint8_t code) {
+Bytes exception_reply(std::uint8_t function, std::uint8_t code) {
   return {static_cast<std::uint8_t>(function | 0x80U), code};
 }
 
-ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& reply) {
+Bytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const Bytes& reply) {
   const std::size_t length = 1 + reply.size();
-  ModbusBytes message = {
-      static_cast<std::uint8_t>(transaction >> 8U), static_cast<std::uint8_t>(transaction & 0xFFU), 0,   0,
-      static_cast<std::uint8_t>(length >> 8U),      static_cast<std::uint8_t>(length & 0xFFU),      unit};
+  Bytes message = {static_cast<std::uint8_t>(transaction >> 8U), static_cast<std::uint8_t>(transaction & 0xFFU), 0,   0,
+                   static_cast<std::uint8_t>(length >> 8U),      static_cast<std::uint8_t>(length & 0xFFU),      unit};
   message.insert(message.end(), reply.begin(), reply.end());
   return message;
 }
 
-ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& reply) {
-  ModbusBytes message = {unit};
+Bytes rtu_message(std::uint8_t unit, const Bytes& reply) {
+  Bytes message = {unit};
   message.insert(message.end(), reply.begin(), reply.end());
   const std::uint16_t sum = sum_of(message);
   message.push_back(static_cast<std::uint8_t>(sum & 0xFFU));

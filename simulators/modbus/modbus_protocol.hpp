@@ -11,7 +11,7 @@ namespace yuragi::simulators::modbus {
 // Application Protocol V1.1b3 (sections 4, 6, 7); MODBUS over Serial Line V1.02 (2.5.1, 6.2.2); MODBUS Messaging on
 // TCP/IP V1.0b (3.1.3).
 
-using ModbusBytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<std::uint8_t>;
 
 inline constexpr std::uint8_t kIllegalFunction = 1;
 inline constexpr std::uint8_t kIllegalAddress = 2;
@@ -30,16 +30,16 @@ struct SlaveRequest {
 
 /// Takes the first whole request out of the bytes of a TCP client; nullopt while it is incomplete. Bytes that cannot be
 /// Modbus empty `incoming`.
-std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming);
+std::optional<SlaveRequest> take_tcp_request(Bytes& incoming);
 
 /// The same for a serial line: bytes without a valid CRC are skipped one by one.
-std::optional<SlaveRequest> take_rtu_request(ModbusBytes& incoming);
+std::optional<SlaveRequest> take_rtu_request(Bytes& incoming);
 
 /// The part of a reply that both framings carry: these registers.
-ModbusBytes registers_reply(std::uint8_t function, std::span<const std::uint16_t> registers);
-ModbusBytes exception_reply(std::uint8_t function, std::uint8_t code);
+Bytes registers_reply(std::uint8_t function, std::span<const std::uint16_t> registers);
+Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
-ModbusBytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const ModbusBytes& reply);
-ModbusBytes rtu_message(std::uint8_t unit, const ModbusBytes& reply);
+Bytes tcp_message(std::uint16_t transaction, std::uint8_t unit, const Bytes& reply);
+Bytes rtu_message(std::uint8_t unit, const Bytes& reply);
 
 }  // namespace yuragi::simulators::modbus

@@ -6,7 +6,7 @@
 namespace yuragi::simulators::modbus {
 namespace {
 
-class RtuPort final : public ModbusPort {
+class RtuPort final : public Port {
  public:
   explicit RtuPort(const std::string& link) : pty_(link) {}
 
@@ -36,12 +36,12 @@ class RtuPort final : public ModbusPort {
 
  private:
   core::Pty pty_;
-  ModbusBytes incoming_;
+  Bytes incoming_;
 };
 
 }  // namespace
 
-std::unique_ptr<ModbusPort> make_modbus_rtu_port(const std::string& link) {
+std::unique_ptr<Port> make_modbus_rtu_port(const std::string& link) {
   return std::make_unique<RtuPort>(link);
 }
 

@@ -28,12 +28,12 @@ class SpeedWindow {
   void clear() { speeds_.erase(speeds_.begin(), speeds_.empty() ? speeds_.end() : std::prev(speeds_.end())); }
 
   /// Gust, lull and mean of these speeds; at least one must have been added.
-  ModbusAir air(double direction_deg) const {
-    ModbusAir air{.speed_m_s = speeds_.back().second,
-                  .direction_deg = direction_deg,
-                  .gust_m_s = speeds_.back().second,
-                  .lull_m_s = speeds_.back().second,
-                  .mean_m_s = 0.0};
+  Air air(double direction_deg) const {
+    Air air{.speed_m_s = speeds_.back().second,
+            .direction_deg = direction_deg,
+            .gust_m_s = speeds_.back().second,
+            .lull_m_s = speeds_.back().second,
+            .mean_m_s = 0.0};
     for (const auto& [time_s, speed_m_s] : speeds_) {
       air.gust_m_s = std::max(air.gust_m_s, speed_m_s);
       air.lull_m_s = std::min(air.lull_m_s, speed_m_s);
@@ -48,26 +48,26 @@ class SpeedWindow {
 
 /// One device on the simulated line.
 struct SimulatedSlave {
-  ModbusSlave model;
+  Slave model;
   SpeedWindow window;
-  ModbusRegisterBank registers;
+  RegisterBank registers;
 };
 
 /// Bytes that are to be sent later.
 struct DueMessage {
   double due_s;
   int client;
-  ModbusBytes bytes;
+  Bytes bytes;
 };
 
 }  // namespace
 
-class ModbusSimulator::State {
+class Simulator::State {
  public:
-  State(std::unique_ptr<ModbusPort> port, core::MeasuredWind wind, const ModbusFaultOptions& options)
+  State(std::unique_ptr<Port> port, core::MeasuredWind wind, const FaultOptions& options)
       : port_(std::move(port)), wind_(std::move(wind)), options_(options), random_(options.seed) {}
 
-  void add(const ModbusSlave& slave) {
+  void add(const Slave& slave) {
     if (slave_of(slave.id) != nullptr) {
       throw std::runtime_error(
           fmt::format("two devices have the id {}: give one of them another id, as NAME@ID", slave.id));
@@ -75,7 +75,7 @@ class ModbusSimulator::State {
     slaves_.push_back({slave, {}, {}});
   }
 
-  const ModbusPort& port() const { return *port_; }
+  const Port& port() const { return *port_; }
 
   void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
     // The devices go on measuring between requests.
@@ -94,7 +94,7 @@ class ModbusSimulator::State {
     }
     port_->come_back();
 
-    for (const ModbusPort::ClientRequest& received : port_->receive(ready)) reply(received);
+    for (const Port::ClientRequest& received : port_->receive(ready)) reply(received);
     send_what_is_due();
   }
 
@@ -110,7 +110,7 @@ class ModbusSimulator::State {
   }
 
   /// The reply of a device without a fault; reading a clearing register clears.
-  static ModbusBytes right_reply(SimulatedSlave& slave, const SlaveRequest& request) {
+  static Bytes right_reply(SimulatedSlave& slave, const SlaveRequest& request) {
     if (request.function != slave.model.function) return exception_reply(request.function, kIllegalFunction);
     if (request.count < 1 || request.count > kMaxRegisters) {
       return exception_reply(request.function, kIllegalValue);
@@ -126,7 +126,7 @@ class ModbusSimulator::State {
     return registers_reply(request.function, values);
   }
 
-  void reply(const ModbusPort::ClientRequest& received) {
+  void reply(const Port::ClientRequest& received) {
     // If no slave has that id, a gateway reports it, and a serial line stays silent.
     const SlaveRequest& request = received.request;
     SimulatedSlave* const slave = slave_of(request.unit);
@@ -140,7 +140,7 @@ class ModbusSimulator::State {
     reply_wrongly(received, right_reply(*slave, request));
   }
 
-  void reply_wrongly(ModbusPort::ClientRequest received, const ModbusBytes& right) {
+  void reply_wrongly(Port::ClientRequest received, const Bytes& right) {
     switch (*fault_) {
       case core::FaultKind::kSilence:
         return;
@@ -167,7 +167,7 @@ class ModbusSimulator::State {
     }
   }
 
-  void send_damaged(int client, ModbusBytes bytes) {
+  void send_damaged(int client, Bytes bytes) {
     if (fault_ == core::FaultKind::kSplit) {
       // A byte, then some, then the rest.
       const auto first = bytes.begin() + 1;
@@ -188,15 +188,15 @@ class ModbusSimulator::State {
     queue(client, std::move(bytes), 0.0);
   }
 
-  ModbusBytes message(const SlaveRequest& request, const ModbusBytes& reply) const {
+  Bytes message(const SlaveRequest& request, const Bytes& reply) const {
     return port_->is_rtu() ? rtu_message(request.unit, reply) : tcp_message(request.transaction, request.unit, reply);
   }
 
-  void send(const ModbusPort::ClientRequest& received, const ModbusBytes& reply, double delay_s) {
+  void send(const Port::ClientRequest& received, const Bytes& reply, double delay_s) {
     queue(received.client, message(received.request, reply), delay_s);
   }
 
-  void queue(int client, ModbusBytes bytes, double delay_s) {
+  void queue(int client, Bytes bytes, double delay_s) {
     outgoing_.push_back({now_s_ + delay_s, client, std::move(bytes)});
   }
 
@@ -207,9 +207,9 @@ class ModbusSimulator::State {
     std::erase_if(outgoing_, [this](const DueMessage& out) { return out.due_s <= now_s_; });
   }
 
-  std::unique_ptr<ModbusPort> port_;
+  std::unique_ptr<Port> port_;
   core::MeasuredWind wind_;
-  ModbusFaultOptions options_;
+  FaultOptions options_;
   std::mt19937_64 random_;
   std::vector<SimulatedSlave> slaves_;
   std::vector<DueMessage> outgoing_;
@@ -220,19 +220,19 @@ class ModbusSimulator::State {
   std::uint64_t replied_ = 0;
 };
 
-ModbusSimulator::ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port,
-                                 core::MeasuredWind wind, const ModbusFaultOptions& options)
+Simulator::Simulator(const std::vector<Slave>& slaves, std::unique_ptr<Port> port, core::MeasuredWind wind,
+                     const FaultOptions& options)
     : state_(std::make_unique<State>(std::move(port), std::move(wind), options)) {
-  for (const ModbusSlave& slave : slaves) state_->add(slave);
+  for (const Slave& slave : slaves) state_->add(slave);
 }
 
-ModbusSimulator::~ModbusSimulator() = default;
+Simulator::~Simulator() = default;
 
-std::string ModbusSimulator::name() const {
+std::string Simulator::name() const {
   return state_->port().name();
 }
 
-std::span<const core::FaultKind> ModbusSimulator::known_faults() const {
+std::span<const core::FaultKind> Simulator::known_faults() const {
   using enum core::FaultKind;
   static constexpr std::array kOverTcp = {kSilence, kFreeze,           kSpike, kGarbage,   kSplit,     kPartial,
                                           kWrongId, kWrongTransaction, kLate,  kException, kDisconnect};
@@ -242,15 +242,15 @@ std::span<const core::FaultKind> ModbusSimulator::known_faults() const {
   return kOverTcp;
 }
 
-std::vector<int> ModbusSimulator::descriptors() const {
+std::vector<int> Simulator::descriptors() const {
   return state_->port().descriptors();
 }
 
-void ModbusSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
+void Simulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   state_->serve(ready, time_s, fault);
 }
 
-std::string ModbusSimulator::status() const {
+std::string Simulator::status() const {
   return state_->status();
 }
 

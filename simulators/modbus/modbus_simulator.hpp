@@ -12,7 +12,7 @@
 
 namespace yuragi::simulators::modbus {
 
-struct ModbusFaultOptions {
+struct FaultOptions {
   std::optional<std::uint8_t> id;  ///< the only slave with faults; the others work. Freeze and spike are of the
                                    ///< wind, disconnect and unplug of the line: those concern all slaves
   double late_s = 0.8;             ///< the delay of a late reply
@@ -21,12 +21,12 @@ struct ModbusFaultOptions {
 
 /// A bus of Modbus devices with the registers of real ones, over TCP (as a gateway with those devices behind it) or a
 /// serial line.
-class ModbusSimulator final : public core::Simulator {
+class Simulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error for two slaves of one id.
-  ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port, core::MeasuredWind wind,
-                  const ModbusFaultOptions& options = {});
-  ~ModbusSimulator() override;
+  Simulator(const std::vector<Slave>& slaves, std::unique_ptr<Port> port, core::MeasuredWind wind,
+            const FaultOptions& options = {});
+  ~Simulator() override;
 
   /// The address or path at which it is reached.
   std::string name() const;

@@ -26,7 +26,7 @@ std::uint16_t listening_port(int socket) {
   return ntohs(reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
 }
 
-class TcpPort final : public ModbusPort {
+class TcpPort final : public Port {
  public:
   TcpPort(const std::string& host, std::uint16_t port) : host_(host), port_(port) {
     if (listen()) return;
@@ -97,7 +97,7 @@ class TcpPort final : public ModbusPort {
   }
 
   /// False: the client has closed the connection.
-  static bool read_from(int client, ModbusBytes& incoming) {
+  static bool read_from(int client, Bytes& incoming) {
     std::array<std::uint8_t, 512> block{};
     const ssize_t size = recv(client, block.data(), block.size(), 0);
     if (size <= 0) return size < 0 && (errno == EAGAIN || errno == EINTR);
@@ -108,12 +108,12 @@ class TcpPort final : public ModbusPort {
   std::string host_;
   std::uint16_t port_;
   int listener_ = -1;
-  std::map<int, ModbusBytes> clients_;  // with the bytes of incomplete requests
+  std::map<int, Bytes> clients_;  // with the bytes of incomplete requests
 };
 
 }  // namespace
 
-std::unique_ptr<ModbusPort> make_modbus_tcp_port(const std::string& host, std::uint16_t port) {
+std::unique_ptr<Port> make_modbus_tcp_port(const std::string& host, std::uint16_t port) {
   return std::make_unique<TcpPort>(host, port);
 }
 

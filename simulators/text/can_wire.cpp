@@ -18,7 +18,7 @@
 namespace yuragi::simulators::text {
 namespace {
 
-class CanWire final : public TextWire {
+class CanWire final : public Wire {
  public:
   explicit CanWire(const std::string& interface) : interface_(interface) {
     if (!connect()) {
@@ -76,7 +76,7 @@ class CanWire final : public TextWire {
 
 }  // namespace
 
-std::unique_ptr<TextWire> make_can_wire(const std::string& interface) {
+std::unique_ptr<Wire> make_can_wire(const std::string& interface) {
   return std::make_unique<CanWire>(interface);
 }
 

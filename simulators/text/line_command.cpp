@@ -9,7 +9,7 @@ namespace {
 
 struct LineOptions {
   std::string format = "csv";
-  TextOptions text;
+  Options text;
 };
 
 }  // namespace

@@ -29,7 +29,7 @@ constexpr std::array<LineFormat, 4> kLineFormats = {
         return fmt::format("{{\"speed\":{:.2f},\"direction\":{:.1f}}}", now.speed_m_s, now.direction_deg);
       }}}};
 
-class LineDevice final : public TextDevice {
+class LineDevice final : public Device {
  public:
   explicit LineDevice(const LineFormat& format) : format_(format) {}
 
@@ -56,7 +56,7 @@ std::vector<std::string> line_format_names() {
   return names;
 }
 
-std::unique_ptr<TextDevice> make_line_device(const std::string& format) {
+std::unique_ptr<Device> make_line_device(const std::string& format) {
   const auto* const found = std::ranges::find(kLineFormats, format, &LineFormat::name);
   if (found == kLineFormats.end()) {
     throw std::runtime_error(

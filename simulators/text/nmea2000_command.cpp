@@ -10,7 +10,7 @@ namespace {
 struct Nmea2000Options {
   std::string format = "yacht-devices";
   std::string reference = "apparent";
-  TextOptions text;
+  Options text;
 };
 
 }  // namespace

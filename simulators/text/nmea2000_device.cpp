@@ -117,7 +117,7 @@ constexpr std::array<BusFormat, 4> kBusFormats = {
      {"canboat-si", "{\"version\":\"4.12.0\",\"units\":\"si\"}\n", canboat_si_line},
      {"candump", "", candump_line}}};
 
-class Nmea2000Device final : public TextDevice {
+class Nmea2000Device final : public Device {
  public:
   Nmea2000Device(const BusFormat& format, unsigned reference) : format_(format), reference_(reference) {}
 
@@ -142,7 +142,7 @@ class Nmea2000Device final : public TextDevice {
   unsigned number_ = 0;
 };
 
-class Nmea2000CanDevice final : public TextDevice {
+class Nmea2000CanDevice final : public Device {
  public:
   explicit Nmea2000CanDevice(unsigned reference) : reference_(reference) {}
 
@@ -193,7 +193,7 @@ std::vector<std::string> nmea2000_reference_names() {
   return names;
 }
 
-std::unique_ptr<TextDevice> make_nmea2000_device(const std::string& format, const std::string& reference) {
+std::unique_ptr<Device> make_nmea2000_device(const std::string& format, const std::string& reference) {
   const auto* const found = std::ranges::find(kBusFormats, format, &BusFormat::name);
   if (found == kBusFormats.end()) {
     throw std::runtime_error(
@@ -202,7 +202,7 @@ std::unique_ptr<TextDevice> make_nmea2000_device(const std::string& format, cons
   return std::make_unique<Nmea2000Device>(*found, reference_named(reference));
 }
 
-std::unique_ptr<TextDevice> make_nmea2000_can_device(const std::string& reference) {
+std::unique_ptr<Device> make_nmea2000_can_device(const std::string& reference) {
   return std::make_unique<Nmea2000CanDevice>(reference_named(reference));
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 struct NmeaOptions {
   std::vector<std::string> formats = {"mwv"};
-  TextOptions text;
+  Options text;
 };
 
 void simulate_nmea(NmeaOptions options) {

@@ -173,7 +173,7 @@ constexpr std::array<Format, 11> kFormats = {{{"mwv", mwv},
                                               {"umb", umb, is_umb_request},
                                               {"wxt", wxt, is_wxt_request}}};
 
-class NmeaDevice final : public TextDevice {
+class NmeaDevice final : public Device {
  public:
   explicit NmeaDevice(std::vector<Format> formats) : formats_(std::move(formats)) {}
 
@@ -215,7 +215,7 @@ std::vector<std::string> nmea_format_names() {
   return names;
 }
 
-std::unique_ptr<TextDevice> make_nmea_device(const std::vector<std::string>& formats) {
+std::unique_ptr<Device> make_nmea_device(const std::vector<std::string>& formats) {
   std::vector<Format> chosen;
   for (const std::string& name : formats) {
     const auto found = std::ranges::find(kFormats, name, &Format::name);

@@ -14,7 +14,7 @@ std::vector<std::string> nmea_format_names();
 
 /// An anemometer that sends its wind in one or several of those formats, one after the other in one burst. Throws
 /// std::runtime_error for an unknown format.
-std::unique_ptr<TextDevice> make_nmea_device(const std::vector<std::string>& formats);
+std::unique_ptr<Device> make_nmea_device(const std::vector<std::string>& formats);
 
 /// Does a device of this format send only on request?
 bool is_only_polled(std::string_view nmea_format);

@@ -8,7 +8,7 @@ namespace yuragi::simulators::text {
 
 extern const core::Command kSignalkCommand;
 const core::Command kSignalkCommand{[](CLI::App& app) {
-  auto options = std::make_shared<TextOptions>();
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("signalk", "Signal K server that streams wind; with --udp, a device's deltas");
   options->add_to(*command);
   options->websocket.path = "/signalk/v1/stream";

@@ -23,7 +23,7 @@ std::string delta_of(std::string_view timestamp, std::string_view source, std::s
                      kSelf, source, timestamp, path, value);
 }
 
-class SignalKDevice final : public TextDevice {
+class SignalKDevice final : public Device {
  public:
   explicit SignalKDevice(bool is_asked) : is_asked_(is_asked), is_subscribed_(!is_asked) {}
 
@@ -75,7 +75,7 @@ class SignalKDevice final : public TextDevice {
 
 }  // namespace
 
-std::unique_ptr<TextDevice> make_signalk_device(bool is_asked) {
+std::unique_ptr<Device> make_signalk_device(bool is_asked) {
   return std::make_unique<SignalKDevice>(is_asked);
 }
 

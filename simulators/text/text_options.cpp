@@ -15,18 +15,18 @@ CLI::Option_group& SerialOrTcpOptions::add_to(CLI::App& command, const std::stri
   return *wire;
 }
 
-std::unique_ptr<TextWire> SerialOrTcpOptions::make_wire() const {
+std::unique_ptr<Wire> SerialOrTcpOptions::make_wire() const {
   if (pty) return make_pty_wire(link);
   const Address address = core::address_option("--tcp", tcp);
   return make_tcp_wire(address.host, address.port);
 }
 
-void print_place(const TextWire& wire) {
+void print_place(const Wire& wire) {
   std::printf("%s\n", wire.place().c_str());
   std::fflush(stdout);
 }
 
-CLI::Option_group& TextOptions::add_to(CLI::App& command) {
+CLI::Option_group& Options::add_to(CLI::App& command) {
   CLI::Option_group& wire = line.add_to(command);
   wire.add_option("--udp", udp, "datagrams to HOST:PORT");
   command.add_option("--rate", rate_hz, "messages per second; 0: on request only")
@@ -36,13 +36,13 @@ CLI::Option_group& TextOptions::add_to(CLI::App& command) {
   return wire;
 }
 
-void TextOptions::add_websocket_to(CLI::App& command) {
+void Options::add_websocket_to(CLI::App& command) {
   CLI::Option* const place =
       command.get_option_group("wire")->add_option("--websocket", websocket_place, "a WebSocket server at HOST:PORT");
   command.add_option("--token", websocket.token, "with --websocket: refuse clients without this token")->needs(place);
 }
 
-std::unique_ptr<TextWire> TextOptions::make_wire() const {
+std::unique_ptr<Wire> Options::make_wire() const {
   if (!can.empty()) return make_can_wire(can);
   if (!websocket_place.empty()) {
     const Address address = core::address_option("--websocket", websocket_place);
@@ -56,10 +56,10 @@ std::unique_ptr<TextWire> TextOptions::make_wire() const {
   return make_udp_wire(address.host, address.port);
 }
 
-void TextOptions::run(std::unique_ptr<TextDevice> device) const {
+void Options::run(std::unique_ptr<Device> device) const {
   if (rate_hz <= 0.0 && !(udp.empty() && can.empty()))
     throw CLI::ValidationError("--rate", "this connection cannot receive requests; give a rate");
-  TextSimulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
+  Simulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
   print_place(simulator.wire());
   common.run_simulator(simulator);
 }

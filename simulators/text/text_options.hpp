@@ -19,14 +19,14 @@ struct SerialOrTcpOptions {
   /// Returns the group of options of which one selects the connection of the device.
   CLI::Option_group& add_to(CLI::App& command, const std::string& what_tcp_is = "a server at HOST:PORT");
   /// Throws CLI::ValidationError, std::runtime_error for an address that cannot be listened on.
-  std::unique_ptr<TextWire> make_wire() const;
+  std::unique_ptr<Wire> make_wire() const;
 };
 
 /// Prints where a simulator is, for scripts that wait for that line.
-void print_place(const TextWire& wire);
+void print_place(const Wire& wire);
 
 /// The options of simulators that send text: over which transport, and how often.
-struct TextOptions {
+struct Options {
   SerialOrTcpOptions line = {};
   std::string udp;
   std::string can;                      ///< of the commands whose device sends frames
@@ -43,10 +43,10 @@ struct TextOptions {
   /// Prints the device's address, for scripts that wait for that line, and runs it to its end. Throws
   /// CLI::ValidationError for options that contradict each other, std::runtime_error for an address that cannot be
   /// listened on.
-  void run(std::unique_ptr<TextDevice> device) const;
+  void run(std::unique_ptr<Device> device) const;
 
  private:
-  std::unique_ptr<TextWire> make_wire() const;
+  std::unique_ptr<Wire> make_wire() const;
 };
 
 }  // namespace yuragi::simulators::text

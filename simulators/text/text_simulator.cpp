@@ -17,8 +17,8 @@ constexpr std::size_t kMaxRequest = 256;
 
 }  // namespace
 
-TextSimulator::TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz,
-                             core::MeasuredWind wind, std::uint64_t seed)
+Simulator::Simulator(std::unique_ptr<Device> device, std::unique_ptr<Wire> wire, double rate_hz,
+                     core::MeasuredWind wind, std::uint64_t seed)
     : device_(std::move(device)),
       wire_(std::move(wire)),
       rate_hz_(rate_hz),
@@ -36,7 +36,7 @@ TextSimulator::TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr
   if (device_->waits_for_clients()) wire_->wait_for_clients();
 }
 
-void TextSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
+void Simulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   fault_ = fault;
   if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
     wire_->take_away();
@@ -56,7 +56,7 @@ void TextSimulator::serve(std::span<const int> ready, double time_s, std::option
   for (; rate_hz_ > 0.0 && next_s_ <= time_s; next_s_ += 1.0 / rate_hz_) send_messages(next_s_, fault);
 }
 
-void TextSimulator::receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault) {
+void Simulator::receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault) {
   for (const char c : bytes) {
     if (c != '\r' && c != '\n') {
       if (request_.size() < kMaxRequest) request_ += c;
@@ -68,14 +68,14 @@ void TextSimulator::receive(std::string_view bytes, double time_s, std::optional
   }
 }
 
-void TextSimulator::send_messages(double time_s, std::optional<core::FaultKind> fault) {
+void Simulator::send_messages(double time_s, std::optional<core::FaultKind> fault) {
   moment_ = wind_.at(time_s, fault);
   if (fault == core::FaultKind::kSilence) return;
   for (const std::string& message : device_->send_messages(moment_, fault)) send(message, time_s, fault);
   ++sent_;
 }
 
-void TextSimulator::send(const std::string& message, double time_s, std::optional<core::FaultKind> fault) {
+void Simulator::send(const std::string& message, double time_s, std::optional<core::FaultKind> fault) {
   if (fault == core::FaultKind::kGarbage) {
     std::string noise(kTextGarbageBytes, '\0');
     std::ranges::generate(noise, [this] { return static_cast<char>(random_()); });
@@ -94,13 +94,13 @@ void TextSimulator::send(const std::string& message, double time_s, std::optiona
 }
 
 /// Sends at once if there is no delay, unless something waits: bytes keep their order.
-void TextSimulator::send_after(double delay_s, const std::string& bytes, double time_s) {
+void Simulator::send_after(double delay_s, const std::string& bytes, double time_s) {
   if (delay_s == 0.0 && waiting_.empty()) return wire_->write(bytes);
   const double due_s = time_s + delay_s;
   waiting_.push_back({waiting_.empty() ? due_s : std::max(due_s, waiting_.back().time_s), bytes});
 }
 
-std::string TextSimulator::status() const {
+std::string Simulator::status() const {
   return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {} sent{}{}", moment_.speed_m_s, moment_.direction_deg,
                      wire_->place(), sent_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
 }

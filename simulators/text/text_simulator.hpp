@@ -17,9 +17,9 @@
 namespace yuragi::simulators::text {
 
 /// The messages of a simulated device. Pure: no socket, no file, no clock. Thread-safe: no.
-class TextDevice {
+class Device {
  public:
-  virtual ~TextDevice() = default;
+  virtual ~Device() = default;
 
   /// The faults of its own that it can play; freeze and spike are the wind's (MeasuredWind), faults of bytes the
   /// simulator's.
@@ -43,13 +43,13 @@ class TextDevice {
 };
 
 /// A device that sends text over a wire: unasked, at a rate, or on request.
-class TextSimulator final : public core::Simulator {
+class Simulator final : public core::Simulator {
  public:
   /// `rate_hz`: how often it sends unasked; 0: only on request. `seed`: of the bytes of the garbage fault.
-  TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz,
-                core::MeasuredWind wind, std::uint64_t seed);
+  Simulator(std::unique_ptr<Device> device, std::unique_ptr<Wire> wire, double rate_hz, core::MeasuredWind wind,
+            std::uint64_t seed);
 
-  const TextWire& wire() const noexcept { return *wire_; }
+  const Wire& wire() const noexcept { return *wire_; }
 
   std::span<const core::FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
@@ -68,8 +68,8 @@ class TextSimulator final : public core::Simulator {
     std::string bytes;
   };
 
-  std::unique_ptr<TextDevice> device_;
-  std::unique_ptr<TextWire> wire_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<Wire> wire_;
   double rate_hz_;
   core::MeasuredWind wind_;
   std::mt19937_64 random_;

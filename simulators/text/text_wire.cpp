@@ -32,7 +32,7 @@ bool has(std::span<const int> ready, int descriptor) {
   return std::ranges::find(ready, descriptor) != ready.end();
 }
 
-class PtyWire final : public TextWire {
+class PtyWire final : public Wire {
  public:
   explicit PtyWire(const std::string& link) : pty_(link) {}
 
@@ -60,7 +60,7 @@ class PtyWire final : public TextWire {
   core::Pty pty_;
 };
 
-class TcpWire final : public TextWire {
+class TcpWire final : public Wire {
  public:
   TcpWire(const std::string& host, std::uint16_t port) : listener_(host, port) {}
 
@@ -134,7 +134,7 @@ class TcpWire final : public TextWire {
   bool waits_for_clients_ = false;
 };
 
-class UdpWire final : public TextWire {
+class UdpWire final : public Wire {
  public:
   UdpWire(const std::string& host, std::uint16_t port) : endpoint_(core::socket_address(host), port) {
     if (port == 0) throw std::runtime_error("cannot send to port 0; give the receiver's port");
@@ -170,15 +170,15 @@ class UdpWire final : public TextWire {
 
 }  // namespace
 
-std::unique_ptr<TextWire> make_pty_wire(const std::string& link) {
+std::unique_ptr<Wire> make_pty_wire(const std::string& link) {
   return std::make_unique<PtyWire>(link);
 }
 
-std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port) {
+std::unique_ptr<Wire> make_tcp_wire(const std::string& host, std::uint16_t port) {
   return std::make_unique<TcpWire>(host, port);
 }
 
-std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port) {
+std::unique_ptr<Wire> make_udp_wire(const std::string& host, std::uint16_t port) {
   return std::make_unique<UdpWire>(host, port);
 }
 

@@ -12,9 +12,9 @@
 namespace yuragi::simulators::text {
 
 /// The transport of a simulated device that sends text. It never waits: what no client reads is lost. Thread-safe: no.
-class TextWire {
+class Wire {
  public:
-  virtual ~TextWire() = default;
+  virtual ~Wire() = default;
 
   /// The faults of the transport itself.
   virtual std::span<const core::FaultKind> known_faults() const = 0;
@@ -44,10 +44,10 @@ class TextWire {
 };
 
 /// A serial port; `link`, if not empty, is the name that it has each time it is plugged in. Throws std::system_error.
-std::unique_ptr<TextWire> make_pty_wire(const std::string& link);
+std::unique_ptr<Wire> make_pty_wire(const std::string& link);
 
 /// A TCP server; port 0 takes a free one. Throws std::runtime_error if the address cannot be listened on.
-std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port);
+std::unique_ptr<Wire> make_tcp_wire(const std::string& host, std::uint16_t port);
 
 struct WebSocketWireOptions {
   std::string host = "127.0.0.1";
@@ -57,13 +57,13 @@ struct WebSocketWireOptions {
 };
 
 /// A WebSocket server, each message as text. Throws std::runtime_error if the address cannot be listened on.
-std::unique_ptr<TextWire> make_websocket_wire(const WebSocketWireOptions& options);
+std::unique_ptr<Wire> make_websocket_wire(const WebSocketWireOptions& options);
 
 /// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.
-std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);
+std::unique_ptr<Wire> make_udp_wire(const std::string& host, std::uint16_t port);
 
 /// A CAN interface of this machine; each write is a frame (`struct can_frame` of linux/can.h). Throws
 /// std::runtime_error if it is missing at first.
-std::unique_ptr<TextWire> make_can_wire(const std::string& interface);
+std::unique_ptr<Wire> make_can_wire(const std::string& interface);
 
 }  // namespace yuragi::simulators::text

@@ -128,7 +128,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   bool has_ended_ = false;
 };
 
-class WebSocketWire final : public TextWire {
+class WebSocketWire final : public Wire {
  public:
   explicit WebSocketWire(const WebSocketWireOptions& options)
       : options_(options), listener_(options.host, options.port) {}
@@ -207,7 +207,7 @@ class WebSocketWire final : public TextWire {
 
 }  // namespace
 
-std::unique_ptr<TextWire> make_websocket_wire(const WebSocketWireOptions& options) {
+std::unique_ptr<Wire> make_websocket_wire(const WebSocketWireOptions& options) {
   return std::make_unique<WebSocketWire>(options);
 }
 

@@ -28,12 +28,12 @@ constexpr double kMetrePerSecond_kmh = 3.6;
 constexpr std::array<std::uint8_t, 16> kCodeOfPoint = {6, 14, 12, 8, 10, 11, 9, 13, 15, 7, 5, 1, 3, 2, 0, 4};
 
 /// Report ids 1 to 3: 9, 24 and 32 bytes of input behind the id.
-UsbBytes acurite_report_descriptor() {
-  UsbBytes bytes = {0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08};
+Bytes acurite_report_descriptor() {
+  Bytes bytes = {0x06, 0x00, 0xFF, 0x09, 0x01, 0xA1, 0x01, 0x15, 0x00, 0x26, 0xFF, 0x00, 0x75, 0x08};
   const std::array<std::uint8_t, 3> sizes = {9, 24, 32};
   std::uint8_t id = 0;
   for (const std::uint8_t size : sizes) {
-    const UsbBytes report = {0x85, ++id, 0x95, size, 0x09, 0x01, 0x81, 0x02};
+    const Bytes report = {0x85, ++id, 0x95, size, 0x09, 0x01, 0x81, 0x02};
     bytes.insert(bytes.end(), report.begin(), report.end());
   }
   bytes.push_back(0xC0);
@@ -60,9 +60,9 @@ class Acurite final : public HidModel {
 
   bool take_output(std::span<const std::uint8_t>) override { return !suffers(core::FaultKind::kSilence); }
 
-  std::optional<UsbBytes> input_report(std::uint8_t id) override {
+  std::optional<Bytes> input_report(std::uint8_t id) override {
     if (suffers(core::FaultKind::kSilence)) return std::nullopt;
-    UsbBytes report;
+    Bytes report;
     if (id == 1) report = report_1_;
     if (id == 2) {
       report = {0x02, 0x00, 0x00, 0x4C, 0xBE, 0x0D, 0xEC, 0x01, 0x52, 0x03, 0x62, 0x7E, 0x38,
@@ -97,12 +97,12 @@ class Acurite final : public HidModel {
 
   double next_s_ = 0.0;
   bool has_direction_ = false;
-  UsbBytes report_1_;
+  Bytes report_1_;
 };
 
 }  // namespace
 
-std::unique_ptr<UsbDevice> make_acurite(const HidModelOptions& options) {
+std::unique_ptr<Device> make_acurite(const HidModelOptions& options) {
   return std::make_unique<Acurite>(options);
 }
 

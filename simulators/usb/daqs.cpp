@@ -14,7 +14,7 @@ namespace {
 
 struct KnownDaq {
   std::string_view name;
-  std::unique_ptr<UsbDevice> (*make)();
+  std::unique_ptr<Device> (*make)();
 };
 constexpr std::array<KnownDaq, 2> kKnownDaqs = {{{"mcc1208", make_mcc1208}, {"labjack-u3", make_labjack}}};
 
@@ -27,7 +27,7 @@ std::vector<std::string> daq_names() {
   return names;
 }
 
-std::unique_ptr<UsbDevice> make_daq(std::string_view name) {
+std::unique_ptr<Device> make_daq(std::string_view name) {
   const auto found = std::ranges::find(kKnownDaqs, name, &KnownDaq::name);
   if (found == kKnownDaqs.end()) {
     throw std::runtime_error(

@@ -141,7 +141,7 @@ bool FineOffset::take_output(std::span<const std::uint8_t> report) {
     reply(address);
   } else if (report[0] == 0xA2 && report[4] == 0xA2) {
     write(address, report.subspan(5, 1));
-    queue_report(UsbBytes(8, 0xA5), kBlockReply_s);
+    queue_report(Bytes(8, 0xA5), kBlockReply_s);
   }
   return true;
 }
@@ -152,18 +152,18 @@ void FineOffset::reply(std::uint16_t address) {
   const double until_s = std::min(next_update_s_, next_minute_s_) - now_s();
   if (std::min(since_s, until_s) < paced(kNearWriting_s)) ++reads_near_writing_;
 
-  UsbBytes block(32, 0xFF);
+  Bytes block(32, 0xFF);
   for (std::size_t i = 0; i < block.size() && address + i < kMemory; ++i) block[i] = memory_[address + i];
   queue_block(std::move(block));
 }
 
-void FineOffset::queue_block(UsbBytes block) {
+void FineOffset::queue_block(Bytes block) {
   if (suffers(core::FaultKind::kGarbage)) block = random_bytes(block.size());
   if (suffers(core::FaultKind::kPartial)) block.resize(16);
   double delay_s = suffers(core::FaultKind::kLate) ? kBlockLateReply_s : kBlockReply_s;
   for (std::size_t at = 0; at < block.size(); at += 8) {
     const auto from = block.begin() + static_cast<std::ptrdiff_t>(at);
-    queue_report(UsbBytes(from, from + 8), delay_s);
+    queue_report(Bytes(from, from + 8), delay_s);
     delay_s += suffers(core::FaultKind::kSplit) ? kBlockSplitReport_s : kBlockReport_s;
   }
 }

@@ -38,7 +38,7 @@ class FineOffset final : public HidModel {
   void update_current_record();
   void end_minute();
   void reply(std::uint16_t address);
-  void queue_block(UsbBytes block);
+  void queue_block(Bytes block);
   std::vector<std::uint8_t> measured() const;
 
   std::uint16_t record_size_;

@@ -28,7 +28,7 @@ std::uint8_t high_byte(std::size_t number) {
   return static_cast<std::uint8_t>((number >> 8U) & 0xFFU);
 }
 
-UsbBytes device_descriptor(const HidIdentity& identity) {
+Bytes device_descriptor(const HidIdentity& identity) {
   return {18,
           0x01,
           0x10,
@@ -49,17 +49,17 @@ UsbBytes device_descriptor(const HidIdentity& identity) {
           1};
 }
 
-UsbBytes endpoint_descriptor(std::uint8_t address, const HidIdentity& identity) {
+Bytes endpoint_descriptor(std::uint8_t address, const HidIdentity& identity) {
   return {7, 0x05, address, 0x03, identity.report_size, 0, identity.interval_ms};
 }
 
-UsbBytes configuration_descriptor(const HidIdentity& identity) {
+Bytes configuration_descriptor(const HidIdentity& identity) {
   const std::size_t report_size = identity.report_descriptor.size();
   const std::uint8_t endpoints = identity.has_out_endpoint ? 2 : 1;
-  UsbBytes bytes = {9, 0x02, 0, 0, 1, 1, 0, 0x80, 50};                   // bus powered, 100 mA
-  const UsbBytes interface = {9, 0x04, 0, 0, endpoints, 0x03, 0, 0, 0};  // HID, no boot protocol
-  const UsbBytes hid = {9, 0x21, 0x10, 0x01, 0, 1, 0x22, low_byte(report_size), high_byte(report_size)};
-  const auto append = [&bytes](const UsbBytes& more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+  Bytes bytes = {9, 0x02, 0, 0, 1, 1, 0, 0x80, 50};                   // bus powered, 100 mA
+  const Bytes interface = {9, 0x04, 0, 0, endpoints, 0x03, 0, 0, 0};  // HID, no boot protocol
+  const Bytes hid = {9, 0x21, 0x10, 0x01, 0, 1, 0x22, low_byte(report_size), high_byte(report_size)};
+  const auto append = [&bytes](const Bytes& more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
   append(interface);
   append(hid);
   append(endpoint_descriptor(0x80U | kTheEndpoint, identity));
@@ -71,14 +71,14 @@ UsbBytes configuration_descriptor(const HidIdentity& identity) {
 
 }  // namespace
 
-UsbDescriptors hid_descriptors(const HidIdentity& identity) {
+Descriptors hid_descriptors(const HidIdentity& identity) {
   return {.device = device_descriptor(identity),
           .configuration = configuration_descriptor(identity),
           .hid_report = identity.report_descriptor,
           .strings = {identity.manufacturer, identity.product_name}};
 }
 
-UsbBytes plain_report_descriptor(std::uint8_t size) {
+Bytes plain_report_descriptor(std::uint8_t size) {
   return {0x06, 0xA0, 0xFF,  // usage page: the vendor's own
           0x09, 0x01,        // usage 1
           0xA1, 0x01,        // collection: application
@@ -112,11 +112,11 @@ void HidModel::advance(double time_s, const core::PlayedMoment& wind, std::optio
   play();
 }
 
-std::optional<UsbBytes> HidModel::control(const UsbSetup& setup, std::span<const std::uint8_t> data) {
+std::optional<Bytes> HidModel::control(const SetupPacket& setup, std::span<const std::uint8_t> data) {
   const unsigned type = setup.value >> 8U;
-  if (setup.request_type == kClassToDevice && setup.request == kSetIdleRequest) return UsbBytes{};
+  if (setup.request_type == kClassToDevice && setup.request == kSetIdleRequest) return Bytes{};
   if (setup.request_type == kClassToDevice && setup.request == kSetReportRequest && type == kOutputType) {
-    return take_output(data) ? std::optional(UsbBytes{}) : std::nullopt;
+    return take_output(data) ? std::optional(Bytes{}) : std::nullopt;
   }
   if (setup.request_type == kClassToHost && setup.request == kGetReportRequest && type == kInputType) {
     auto report = input_report(low_byte(setup.value));
@@ -126,15 +126,15 @@ std::optional<UsbBytes> HidModel::control(const UsbSetup& setup, std::span<const
   return std::nullopt;
 }
 
-std::optional<UsbBytes> HidModel::input_report(std::uint8_t) {
+std::optional<Bytes> HidModel::input_report(std::uint8_t) {
   return std::nullopt;
 }
 
-std::optional<UsbBytes> HidModel::in(std::uint8_t endpoint, std::size_t max_size) {
+std::optional<Bytes> HidModel::in(std::uint8_t endpoint, std::size_t max_size) {
   if (endpoint != kTheEndpoint) return std::nullopt;
   while (!waiting_.empty() && waiting_.front().from_s + kKeptFor_s < now_s_) waiting_.pop_front();
   if (waiting_.empty() || waiting_.front().from_s > now_s_) return std::nullopt;
-  UsbBytes report = std::move(waiting_.front().report);
+  Bytes report = std::move(waiting_.front().report);
   waiting_.pop_front();
   if (report.size() > max_size) report.resize(max_size);
   return report;
@@ -144,13 +144,13 @@ bool HidModel::out(std::uint8_t endpoint, std::span<const std::uint8_t> data) {
   return has_out_endpoint_ && endpoint == kTheEndpoint && take_output(data);
 }
 
-void HidModel::queue_report(UsbBytes report, double delay_s) {
+void HidModel::queue_report(Bytes report, double delay_s) {
   if (waiting_.size() == kMaxQueue) waiting_.pop_front();
   waiting_.push_back({now_s_ + delay_s, std::move(report)});
 }
 
-UsbBytes HidModel::random_bytes(std::size_t size) {
-  UsbBytes bytes(size);
+Bytes HidModel::random_bytes(std::size_t size) {
+  Bytes bytes(size);
   std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
   return bytes;
 }

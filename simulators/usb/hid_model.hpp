@@ -18,7 +18,7 @@ struct HidIdentity {
   std::uint16_t product = 0;
   std::string manufacturer;
   std::string product_name;
-  UsbBytes report_descriptor;     ///< HID 1.11 specification, 6.2.2
+  Bytes report_descriptor;        ///< HID 1.11 specification, 6.2.2
   std::uint8_t report_size = 8;   ///< of the interrupt end points, bytes
   std::uint8_t interval_ms = 10;  ///< how often the host polls for a report
   bool has_out_endpoint = false;  ///< otherwise output reports come as SET_REPORT
@@ -26,10 +26,10 @@ struct HidIdentity {
 };
 
 /// The descriptors that such a device sends.
-UsbDescriptors hid_descriptors(const HidIdentity& identity);
+Descriptors hid_descriptors(const HidIdentity& identity);
 
 /// The report descriptor of a vendor's own device without report ids: one input and one output report of `size` bytes.
-UsbBytes plain_report_descriptor(std::uint8_t size);
+Bytes plain_report_descriptor(std::uint8_t size);
 
 /// How a simulated station runs.
 struct HidModelOptions {
@@ -41,13 +41,13 @@ struct HidModelOptions {
 /// station adds the content of its reports, and when it sends them.
 ///
 /// kFreeze and kSpike come with the wind that it is given (MeasuredWind). Thread-safe: no.
-class HidModel : public UsbDevice {
+class HidModel : public Device {
  public:
-  const UsbDescriptors& descriptors() const final { return descriptors_; }
+  const Descriptors& descriptors() const final { return descriptors_; }
   std::span<const core::FaultKind> known_faults() const final { return known_faults_; }
   void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) final;
-  std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) final;
-  std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) final;
+  std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> data) final;
+  std::optional<Bytes> in(std::uint8_t endpoint, std::size_t max_size) final;
   bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) final;
 
  protected:
@@ -59,7 +59,7 @@ class HidModel : public UsbDevice {
   /// Takes an output report, received by either way (without a report id). False: refused.
   virtual bool take_output(std::span<const std::uint8_t> report) = 0;
   /// Returns the reply to GET_REPORT for input report `id`; nullopt: refused.
-  virtual std::optional<UsbBytes> input_report(std::uint8_t id);
+  virtual std::optional<Bytes> input_report(std::uint8_t id);
 
   double now_s() const noexcept { return now_s_; }
   const core::PlayedMoment& wind() const noexcept { return wind_; }
@@ -68,20 +68,20 @@ class HidModel : public UsbDevice {
   double paced(double duration_s) const noexcept { return duration_s / options_.pace; }
 
   /// Queues a report for the host, to be fetched from `delay_s` on. What is not fetched is dropped after some seconds.
-  void queue_report(UsbBytes report, double delay_s = 0.0);
+  void queue_report(Bytes report, double delay_s = 0.0);
   /// Drops the reports that have not been fetched.
   void drop_reports() { waiting_.clear(); }
-  UsbBytes random_bytes(std::size_t size);
+  Bytes random_bytes(std::size_t size);
   /// A number from 0 up to, but without, `end`.
   std::uint64_t random_below(std::uint64_t end) { return random_() % end; }
 
  private:
   struct Waiting {
     double from_s;
-    UsbBytes report;
+    Bytes report;
   };
 
-  UsbDescriptors descriptors_;
+  Descriptors descriptors_;
   std::span<const core::FaultKind> known_faults_;
   HidModelOptions options_;
   bool has_out_endpoint_;

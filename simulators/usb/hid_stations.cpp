@@ -17,11 +17,11 @@ namespace {
 
 struct HidStationKind {
   std::string_view name;
-  std::unique_ptr<UsbDevice> (*make)(const HidModelOptions& options);
+  std::unique_ptr<Device> (*make)(const HidModelOptions& options);
 };
 
 template <FineOffsetRecord kRecord>
-std::unique_ptr<UsbDevice> make_fineoffset(const HidModelOptions& options) {
+std::unique_ptr<Device> make_fineoffset(const HidModelOptions& options) {
   return std::make_unique<FineOffset>(kRecord, options);
 }
 
@@ -42,7 +42,7 @@ std::vector<std::string_view> hid_station_names() {
   return names;
 }
 
-std::unique_ptr<UsbDevice> make_hid_station(std::string_view name, double pace, std::uint64_t seed) {
+std::unique_ptr<Device> make_hid_station(std::string_view name, double pace, std::uint64_t seed) {
   const auto kind = std::ranges::find(kHidStationKinds, name, &HidStationKind::name);
   if (kind == kHidStationKinds.end()) {
     throw std::runtime_error(

@@ -37,9 +37,9 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 
 }  // namespace
 
-HidrawNode::HidrawNode(UsbHost& host, const std::string& path)
+HidrawNode::HidrawNode(Host& host, const std::string& path)
     : host_(&host), readiness_(path, ReadinessNode::Direction::kReadable) {
-  for (const UsbEndpoint& endpoint : host.port().summary().endpoints) {
+  for (const Endpoint& endpoint : host.port().summary().endpoints) {
     if (endpoint.type != kInterruptEndpoint) continue;
     const auto number = static_cast<std::uint8_t>(endpoint.address & 0x0FU);
     if ((endpoint.address & 0x80U) == 0) {
@@ -77,11 +77,11 @@ void HidrawNode::read_reports() {
     return;
   }
   if (reading_) return;
-  UsbTransfer transfer;
+  Transfer transfer;
   transfer.endpoint = in_endpoint_;
   transfer.is_to_host = true;
   transfer.max_size = report_size_;
-  reading_ = host_->submit(std::move(transfer), [this](const UsbOutcome& outcome) {
+  reading_ = host_->submit(std::move(transfer), [this](const Outcome& outcome) {
     reading_.reset();
     if (outcome.is_refused) return;
     if (reports_.size() < kMaxReports) reports_.push_back(outcome.data);
@@ -93,7 +93,7 @@ void HidrawNode::hand_out_reports() {
   while (!reports_.empty() && !readers_.empty()) {
     ProgramCall reader = std::move(readers_.front());
     readers_.pop_front();
-    const UsbBytes report = std::move(reports_.front());
+    const Bytes report = std::move(reports_.front());
     reports_.pop_front();
     // Before the reply: the program may call poll() at once, and would read again if there seemed to be more.
     readiness_.set_ready(!reports_.empty());
@@ -125,8 +125,8 @@ void HidrawNode::obey_ioctl(ProgramCall call) {
   const unsigned long request = call.request();
   const std::size_t size = _IOC_SIZE(request);
   const ProgramMemory memory = call.argument().pointed_to(0, size);
-  const UsbSummary& summary = host_->port().summary();
-  const UsbBytes& descriptor = host_->port().descriptors().hid_report;
+  const Summary& summary = host_->port().summary();
+  const Bytes& descriptor = host_->port().descriptors().hid_report;
   if (!memory) return call.fail(EFAULT);
 
   switch (without_size(request)) {
@@ -173,13 +173,13 @@ void HidrawNode::get_report(ProgramCall call, const ProgramMemory& buffer, std::
   if (buffer.bytes().size() < 2 || buffer.bytes().size() > kMaxReport) return call.fail(EINVAL);
   const std::uint8_t number = buffer.bytes()[0];
   const std::size_t skipped = number == 0 ? 1 : 0;
-  UsbTransfer transfer;
+  Transfer transfer;
   transfer.is_to_host = true;
   transfer.max_size = buffer.bytes().size() - skipped;
   transfer.setup = {kClassIn, kHidrawGetReport, static_cast<std::uint16_t>((type << 8U) | number), 0,
                     static_cast<std::uint16_t>(transfer.max_size)};
   const auto kept = std::make_shared<ProgramCall>(std::move(call));
-  submit(kept, std::move(transfer), [kept, buffer, skipped](const UsbOutcome& outcome) {
+  submit(kept, std::move(transfer), [kept, buffer, skipped](const Outcome& outcome) {
     if (outcome.is_refused) return kept->fail(EPIPE);
     buffer.write(skipped, outcome.data);
     kept->reply(static_cast<long>(outcome.size + skipped));
@@ -191,7 +191,7 @@ void HidrawNode::set_report(ProgramCall call, std::span<const std::uint8_t> repo
   const std::uint8_t number = report[0];
   const std::size_t whole = report.size();
   if (number == 0) report = report.subspan(1);
-  UsbTransfer transfer;
+  Transfer transfer;
   transfer.data.assign(report.begin(), report.end());
   if (type == kHidrawOutputReport && out_endpoint_ != 0) {
     transfer.endpoint = out_endpoint_;
@@ -200,13 +200,13 @@ void HidrawNode::set_report(ProgramCall call, std::span<const std::uint8_t> repo
                       static_cast<std::uint16_t>(report.size())};
   }
   const auto kept = std::make_shared<ProgramCall>(std::move(call));
-  submit(kept, std::move(transfer), [kept, whole](const UsbOutcome& outcome) {
+  submit(kept, std::move(transfer), [kept, whole](const Outcome& outcome) {
     if (outcome.is_refused) return kept->fail(EPIPE);
     kept->reply(static_cast<long>(whole));
   });
 }
 
-void HidrawNode::submit(const std::shared_ptr<ProgramCall>& call, UsbTransfer transfer, UsbHost::Then then) {
+void HidrawNode::submit(const std::shared_ptr<ProgramCall>& call, Transfer transfer, Host::Then then) {
   const std::uint64_t number = host_->submit(std::move(transfer), std::move(then));
   pending_.push_back({number, time_s_ + kTimeout_s, call});
 }

@@ -18,7 +18,7 @@ namespace yuragi::simulators::usb {
 class HidrawNode final : public EmulatedNode {
  public:
   /// `path`: the node's file inside the testbed. `host` must outlive unplug().
-  HidrawNode(UsbHost& host, const std::string& path);
+  HidrawNode(Host& host, const std::string& path);
 
   void serve(double time_s) override;
   void unplug() override;
@@ -29,7 +29,7 @@ class HidrawNode final : public EmulatedNode {
   void get_report(ProgramCall call, const ProgramMemory& buffer, std::uint16_t type);
   void set_report(ProgramCall call, std::span<const std::uint8_t> report, std::uint16_t type);
   /// Submits a control transfer; the program that waits in `call` waits for kTimeout_s at most.
-  void submit(const std::shared_ptr<ProgramCall>& call, UsbTransfer transfer, UsbHost::Then then);
+  void submit(const std::shared_ptr<ProgramCall>& call, Transfer transfer, Host::Then then);
   void give_up_late_ones();
   void read_reports();
   void hand_out_reports();
@@ -41,13 +41,13 @@ class HidrawNode final : public EmulatedNode {
     std::weak_ptr<ProgramCall> call;  // expired once it is completed
   };
 
-  UsbHost* host_;
+  Host* host_;
   ReadinessNode readiness_;
   std::uint8_t in_endpoint_ = 0;
   std::uint8_t out_endpoint_ = 0;
   std::size_t report_size_ = 0;
   std::optional<std::uint64_t> reading_;  // the transfer that waits for the next report
-  std::deque<UsbBytes> reports_;
+  std::deque<Bytes> reports_;
   std::deque<ProgramCall> readers_;
   std::vector<Pending> pending_;
   double time_s_ = 0.0;

@@ -30,7 +30,7 @@ constexpr std::uint8_t kCounterPin = 4;  // where the cup is wired to: FIO4
 constexpr std::uint8_t kNotEnabled = 0x50;
 constexpr std::uint8_t kNotAnInput = 0x51;
 
-using UsbView = std::span<const std::uint8_t>;
+using View = std::span<const std::uint8_t>;
 
 /// The calibration of inputs 0 to 3, each a little off the nominal one.
 double volts_per_step(unsigned channel) {
@@ -40,27 +40,27 @@ double volts_at_zero(unsigned channel) {
   return -10.3 - 0.05 * (channel + 1.0);
 }
 
-std::uint16_t labjack_sum_of(UsbView bytes) {
+std::uint16_t labjack_sum_of(View bytes) {
   unsigned sum = 0;
   for (const std::uint8_t byte : bytes) sum += byte;
   return static_cast<std::uint16_t>(sum);
 }
 
 /// The sum of what follows the first byte of a header, folded into 8 bits twice.
-std::uint8_t folded_sum(UsbView frame) {
+std::uint8_t folded_sum(View frame) {
   unsigned sum = labjack_sum_of(frame.subspan(1, kFrameHeader - 1));
   sum = (sum & 0xFFU) + (sum >> 8U);
   return static_cast<std::uint8_t>((sum & 0xFFU) + (sum >> 8U));
 }
 
-void seal(UsbBytes& frame) {
-  const std::uint16_t sum = labjack_sum_of(UsbView(frame).subspan(kFrameHeader));
+void seal(Bytes& frame) {
+  const std::uint16_t sum = labjack_sum_of(View(frame).subspan(kFrameHeader));
   frame[4] = static_cast<std::uint8_t>(sum & 0xFFU);
   frame[5] = static_cast<std::uint8_t>(sum >> 8U);
   frame[0] = folded_sum(frame);
 }
 
-bool is_sealed(UsbView frame) {
+bool is_sealed(View frame) {
   if (frame.size() < kFrameHeader || frame[1] != 0xF8 || frame.size() != kFrameHeader + std::size_t{2} * frame[2])
     return false;
   const std::uint16_t sum = labjack_sum_of(frame.subspan(kFrameHeader));
@@ -68,8 +68,8 @@ bool is_sealed(UsbView frame) {
 }
 
 /// A reply with these bytes behind its header.
-UsbBytes frame_of(std::uint8_t command, const UsbBytes& data) {
-  UsbBytes frame(kFrameHeader + data.size() + data.size() % 2);
+Bytes frame_of(std::uint8_t command, const Bytes& data) {
+  Bytes frame(kFrameHeader + data.size() + data.size() % 2);
   frame[1] = 0xF8;
   frame[2] = static_cast<std::uint8_t>((frame.size() - kFrameHeader) / 2);
   frame[3] = command;
@@ -78,11 +78,11 @@ UsbBytes frame_of(std::uint8_t command, const UsbBytes& data) {
   return frame;
 }
 
-void append_number(UsbBytes& bytes, std::uint64_t value, int size) {
+void append_number(Bytes& bytes, std::uint64_t value, int size) {
   for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
-UsbDescriptors labjack_descriptors() {
+Descriptors labjack_descriptors() {
   return {.device = {18, 1, 0x00, 0x02, 0, 0, 0, 8, 0xD5, 0x0C, 0x03, 0x00, 0x00, 0x01, 1, 2, 0, 1},
           .configuration = {9, 2, 39,   0, 1,  1,    0,    0x80, 250,  // bus powered, 500 mA
                             9, 4, 0,    0, 3,  0xFF, 0xFF, 0xFF, 0,    // one vendor's interface
@@ -93,9 +93,9 @@ UsbDescriptors labjack_descriptors() {
           .strings = {"LabJack Corporation", "LabJack U3"}};  // no serial number: ConfigU3 reports it
 }
 
-class Labjack final : public UsbDevice {
+class Labjack final : public Device {
  public:
-  const UsbDescriptors& descriptors() const override { return descriptors_; }
+  const Descriptors& descriptors() const override { return descriptors_; }
 
   std::span<const core::FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {core::FaultKind::kSilence,
@@ -123,7 +123,7 @@ class Labjack final : public UsbDevice {
     replies_.clear();
   }
 
-  std::optional<UsbBytes> control(const UsbSetup& /*setup*/, std::span<const std::uint8_t> /*data*/) override {
+  std::optional<Bytes> control(const SetupPacket& /*setup*/, std::span<const std::uint8_t> /*data*/) override {
     return std::nullopt;
   }
 
@@ -133,27 +133,27 @@ class Labjack final : public UsbDevice {
     // A late reply is sent with the next command.
     std::ranges::move(late_, std::back_inserter(replies_));
     late_.clear();
-    if (std::optional<UsbBytes> reply = reply_to(data)) {
+    if (std::optional<Bytes> reply = reply_to(data)) {
       (fault_ == core::FaultKind::kLate ? late_ : replies_).push_back(spoilt(std::move(*reply)));
     }
     while (replies_.size() > kMaxReplies) replies_.pop_front();
     return true;
   }
 
-  std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) override {
+  std::optional<Bytes> in(std::uint8_t endpoint, std::size_t max_size) override {
     if (endpoint != kReplyEndpoint || replies_.empty() || fault_ == core::FaultKind::kSilence) return std::nullopt;
-    UsbBytes& next = replies_.front();
+    Bytes& next = replies_.front();
     const auto size = static_cast<std::ptrdiff_t>(std::min(max_size, next.size()));
-    UsbBytes part(next.begin(), next.begin() + size);
+    Bytes part(next.begin(), next.begin() + size);
     next.erase(next.begin(), next.begin() + size);
     if (next.empty()) replies_.pop_front();
     return part;
   }
 
  private:
-  std::optional<UsbBytes> reply_to(UsbView command) {
-    if (!is_sealed(command)) return UsbBytes{0xB8, 0xB8};
-    const UsbView data = command.subspan(kFrameHeader);
+  std::optional<Bytes> reply_to(View command) {
+    if (!is_sealed(command)) return Bytes{0xB8, 0xB8};
+    const View data = command.subspan(kFrameHeader);
     switch (command[3]) {
       case 0x00:
         return data.empty() ? std::nullopt : std::optional(feedback(data));
@@ -168,8 +168,8 @@ class Labjack final : public UsbDevice {
     }
   }
 
-  UsbBytes feedback(UsbView data) const {
-    UsbBytes reply = {0, 0, data[0]};
+  Bytes feedback(View data) const {
+    Bytes reply = {0, 0, data[0]};
     if (fault_ == core::FaultKind::kWrongTransaction) --reply[2];
     std::uint8_t part = 0;
     const auto refuse = [&](std::uint8_t error) { return frame_of(0x00, {error, part, reply[2]}); };
@@ -208,11 +208,11 @@ class Labjack final : public UsbDevice {
     return has_one && pin == kCounterPin;
   }
 
-  static UsbBytes config_u3() {
-    UsbBytes data(32, 0);
+  static Bytes config_u3() {
+    Bytes data(32, 0);
     data[7] = 30;  // hardware version 1.30
     data[8] = 1;
-    UsbBytes serial;
+    Bytes serial;
     append_number(serial, kSerialNumber, 4);
     std::ranges::copy(serial, data.begin() + 9);
     data[13] = 3;   // product id
@@ -221,7 +221,7 @@ class Labjack final : public UsbDevice {
     return frame_of(0x08, data);
   }
 
-  UsbBytes config_io(UsbView data) {
+  Bytes config_io(View data) {
     const std::uint8_t mask = data[0];
     if ((mask & 1U) != 0) {
       if (data[2] >> 4U < 4) return frame_of(0x0B, {kNotAnInput, 0, 0, 0, 0, 0});  // those pins are analogue on the HV
@@ -234,8 +234,8 @@ class Labjack final : public UsbDevice {
                            digital_as_analog_[1]});
   }
 
-  static UsbBytes read_memory(std::uint8_t block) {
-    UsbBytes data = {0, 0};
+  static Bytes read_memory(std::uint8_t block) {
+    Bytes data = {0, 0};
     for (unsigned i = 0; i < 4; ++i) {
       double value = 0.0;
       if (block == 0) value = i % 2 == 0 ? 0.000037231 : 0.0;
@@ -255,7 +255,7 @@ class Labjack final : public UsbDevice {
     return static_cast<std::uint16_t>(16.0 * std::clamp(code, 0.0, 4095.0));
   }
 
-  UsbBytes spoilt(UsbBytes reply) {
+  Bytes spoilt(Bytes reply) {
     if (fault_ == core::FaultKind::kGarbage) {
       std::ranges::generate(reply, [this] { return static_cast<std::uint8_t>(random_()); });
     }
@@ -264,20 +264,20 @@ class Labjack final : public UsbDevice {
     return reply;
   }
 
-  UsbDescriptors descriptors_ = labjack_descriptors();
+  Descriptors descriptors_ = labjack_descriptors();
   CupAndVane cup_and_vane_;
   std::uint64_t counted_from_ = 0;
   std::uint8_t timers_and_counters_ = 0;
   std::array<std::uint8_t, 2> digital_as_analog_{};
-  std::deque<UsbBytes> replies_;
-  std::deque<UsbBytes> late_;
+  std::deque<Bytes> replies_;
+  std::deque<Bytes> late_;
   std::optional<core::FaultKind> fault_;
   std::mt19937_64 random_{3};
 };
 
 }  // namespace
 
-std::unique_ptr<UsbDevice> make_labjack() {
+std::unique_ptr<Device> make_labjack() {
   return std::make_unique<Labjack>();
 }
 

@@ -27,7 +27,7 @@ constexpr std::size_t kCalibrationSize = 768;
 constexpr std::size_t kGroundedCalibration = 0x100;
 constexpr std::string_view kMccSerial = "01C5A7E2";
 
-void append_low_first(UsbBytes& bytes, std::uint32_t value, int size) {
+void append_low_first(Bytes& bytes, std::uint32_t value, int size) {
   for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
@@ -39,8 +39,8 @@ float intercept_of(unsigned channel) {
   return -20.0F + 3.0F * static_cast<float>(channel);
 }
 
-UsbBytes calibration_memory() {
-  UsbBytes memory;
+Bytes calibration_memory() {
+  Bytes memory;
   const auto add = [&memory](float slope, float intercept) {
     append_low_first(memory, std::bit_cast<std::uint32_t>(slope), 4);
     append_low_first(memory, std::bit_cast<std::uint32_t>(intercept), 4);
@@ -51,7 +51,7 @@ UsbBytes calibration_memory() {
   return memory;
 }
 
-UsbDescriptors mcc1208_descriptors() {
+Descriptors mcc1208_descriptors() {
   return {.device = {18, 1, 0x00, 0x02, 0xFF, 0xFF, 0xFF, 64, 0xDB, 0x09, 0xE8, 0x00, 0x00, 0x01, 1, 2, 3, 1},
           .configuration = {9, 2, 32,   0, 1,  1,    0,    0x80, 250,  // bus powered, 500 mA
                             9, 4, 0,    0, 2,  0xFF, 0xFF, 0xFF, 0,    // one vendor's interface
@@ -61,9 +61,9 @@ UsbDescriptors mcc1208_descriptors() {
           .strings = {"Measurement Computing Corp.", "USB-1208FS-Plus", std::string(kMccSerial)}};
 }
 
-class Mcc1208 final : public UsbDevice {
+class Mcc1208 final : public Device {
  public:
-  const UsbDescriptors& descriptors() const override { return descriptors_; }
+  const Descriptors& descriptors() const override { return descriptors_; }
 
   std::span<const core::FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {
@@ -78,9 +78,9 @@ class Mcc1208 final : public UsbDevice {
     if (fault == core::FaultKind::kUnplug) counted_from_ = cup_and_vane_.pulses();  // without power the count is lost
   }
 
-  std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> /*data*/) override {
+  std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> /*data*/) override {
     if (fault_ == core::FaultKind::kException) return std::nullopt;
-    std::optional<UsbBytes> reply = setup.request_type == 0xC0 ? reply_to(setup) : obey(setup);
+    std::optional<Bytes> reply = setup.request_type == 0xC0 ? reply_to(setup) : obey(setup);
     if (!reply) return std::nullopt;
     if (reply->size() > setup.length) reply->resize(setup.length);
     if (fault_ == core::FaultKind::kGarbage) {
@@ -90,12 +90,12 @@ class Mcc1208 final : public UsbDevice {
     return reply;
   }
 
-  std::optional<UsbBytes> in(std::uint8_t /*endpoint*/, std::size_t /*max_size*/) override { return std::nullopt; }
+  std::optional<Bytes> in(std::uint8_t /*endpoint*/, std::size_t /*max_size*/) override { return std::nullopt; }
   bool out(std::uint8_t /*endpoint*/, std::span<const std::uint8_t> /*data*/) override { return false; }
 
  private:
-  std::optional<UsbBytes> reply_to(const UsbSetup& setup) const {
-    UsbBytes reply;
+  std::optional<Bytes> reply_to(const SetupPacket& setup) const {
+    Bytes reply;
     switch (setup.request) {
       case 0x10: {
         const unsigned channel = setup.value & 0xFFU;
@@ -109,20 +109,20 @@ class Mcc1208 final : public UsbDevice {
         return reply;
       case 0x30:
         if (setup.value >= memory_.size()) return std::nullopt;
-        return UsbBytes(memory_.begin() + setup.value, memory_.end());
+        return Bytes(memory_.begin() + setup.value, memory_.end());
       case 0x44:
-        return UsbBytes{0, 0};
+        return Bytes{0, 0};
       case 0x48:
-        return UsbBytes(kMccSerial.begin(), kMccSerial.end());
+        return Bytes(kMccSerial.begin(), kMccSerial.end());
       default:
         return std::nullopt;
     }
   }
 
-  std::optional<UsbBytes> obey(const UsbSetup& setup) {
+  std::optional<Bytes> obey(const SetupPacket& setup) {
     if (setup.request_type != 0x40 || setup.request != 0x20) return std::nullopt;
     counted_from_ = cup_and_vane_.pulses();
-    return UsbBytes{};
+    return Bytes{};
   }
 
   /// The ADC's code for the voltage at an input.
@@ -136,8 +136,8 @@ class Mcc1208 final : public UsbDevice {
     return static_cast<std::uint16_t>(std::clamp(std::round(code), 0.0, 4095.0));
   }
 
-  UsbDescriptors descriptors_ = mcc1208_descriptors();
-  UsbBytes memory_ = calibration_memory();
+  Descriptors descriptors_ = mcc1208_descriptors();
+  Bytes memory_ = calibration_memory();
   CupAndVane cup_and_vane_;
   std::uint64_t counted_from_ = 0;
   std::optional<core::FaultKind> fault_;
@@ -146,7 +146,7 @@ class Mcc1208 final : public UsbDevice {
 
 }  // namespace
 
-std::unique_ptr<UsbDevice> make_mcc1208() {
+std::unique_ptr<Device> make_mcc1208() {
   return std::make_unique<Mcc1208>();
 }
 

@@ -83,7 +83,7 @@ class Te923 final : public HidModel {
 
   void reply(unsigned address) {
     // The block: header, memory, check byte. Only the readings are more than empty memory here.
-    UsbBytes block(33, 0x00);
+    Bytes block(33, 0x00);
     block[0] = 0x5A;
     if (address == kTe923ReadingsAt) std::copy(readings_.begin(), readings_.end(), block.begin() + 1);
     block.push_back(xor_of(block));
@@ -95,7 +95,7 @@ class Te923 final : public HidModel {
     double delay_s = suffers(core::FaultKind::kLate) ? kTe923LateReply_s : kTe923Reply_s;
     for (std::size_t at = 0; at < block.size();) {
       const std::size_t count = std::min<std::size_t>(7, block.size() - at);
-      UsbBytes report(8);
+      Bytes report(8);
       report[0] = static_cast<std::uint8_t>(count);
       std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
       queue_report(std::move(report), delay_s);
@@ -111,7 +111,7 @@ class Te923 final : public HidModel {
 
 }  // namespace
 
-std::unique_ptr<UsbDevice> make_te923(const HidModelOptions& options) {
+std::unique_ptr<Device> make_te923(const HidModelOptions& options) {
   return std::make_unique<Te923>(options);
 }
 

@@ -7,6 +7,6 @@
 namespace yuragi::simulators::usb {
 
 /// A Hideki TE923 console (Meade, TFA Nexus, Mebus, IROX).
-std::unique_ptr<UsbDevice> make_te923(const HidModelOptions& options);
+std::unique_ptr<Device> make_te923(const HidModelOptions& options);
 
 }  // namespace yuragi::simulators::usb

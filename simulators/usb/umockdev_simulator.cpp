@@ -37,13 +37,13 @@ struct PluggedDevice {
 
 struct UmockdevSimulator::State {
   struct Socket {
-    explicit Socket(std::unique_ptr<UsbPort> device) : port(std::move(device)), host(*port) {}
-    std::unique_ptr<UsbPort> port;
-    UsbHost host;
+    explicit Socket(std::unique_ptr<Port> device) : port(std::move(device)), host(*port) {}
+    std::unique_ptr<Port> port;
+    Host host;
     std::optional<PluggedDevice> plugged;
   };
 
-  explicit State(std::vector<std::unique_ptr<UsbPort>> ports) : known_faults(faults_of(ports)) {
+  explicit State(std::vector<std::unique_ptr<Port>> ports) : known_faults(faults_of(ports)) {
     for (auto& port : ports) sockets.push_back(std::make_unique<Socket>(std::move(port)));
     for (std::size_t i = 0; i < sockets.size(); ++i) plug_in(i);
   }
@@ -51,7 +51,7 @@ struct UmockdevSimulator::State {
   /// Makes the device appear. The host's kernel gives it the next number each time, as a real one does.
   void plug_in(std::size_t index) {
     Socket& socket = *sockets[index];
-    const UsbSummary& summary = socket.port->summary();
+    const Summary& summary = socket.port->summary();
     const bool is_hid = !summary.interfaces.empty() && summary.interfaces[0].device_class == kHidClass;
     device_number = device_number % kMaxDeviceNumbers + 1;
     PluggedDevice device;
@@ -68,7 +68,7 @@ struct UmockdevSimulator::State {
       device.paths.insert(device.paths.begin(), path);
     };
     add(usb_path, usb_description(socket, usb_path, usb_node));
-    for (const UsbInterface& interface : summary.interfaces) {
+    for (const Interface& interface : summary.interfaces) {
       const std::string path = fmt::format("{}/1-{}:1.{}", usb_path, index + 1, interface.number);
       add(path, interface_description(path, interface, is_hid && interface.number == 0));
     }
@@ -111,8 +111,8 @@ struct UmockdevSimulator::State {
   }
 
   std::string usb_description(const Socket& socket, const std::string& path, const std::string& node) const {
-    const UsbSummary& summary = socket.port->summary();
-    const UsbDescriptors& descriptors = socket.port->descriptors();
+    const Summary& summary = socket.port->summary();
+    const Descriptors& descriptors = socket.port->descriptors();
     std::string text = fmt::format(
         "P: {}\nE: DEVTYPE=usb_device\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\n"
         "E: MAJOR={}\nE: MINOR={}\nE: DEVNAME=/dev/{}\nE: PRODUCT={:x}/{:x}/{:x}\n",
@@ -138,7 +138,7 @@ struct UmockdevSimulator::State {
     return text;
   }
 
-  static std::string interface_description(const std::string& path, const UsbInterface& interface, bool is_hid) {
+  static std::string interface_description(const std::string& path, const Interface& interface, bool is_hid) {
     return fmt::format(
         "P: {}\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\n{}A: bInterfaceNumber={:02x}\\n\n"
         "A: bInterfaceClass={:02x}\\n\n\n",
@@ -146,7 +146,7 @@ struct UmockdevSimulator::State {
   }
 
   static std::string hid_description(const Socket& socket, const std::string& path, std::size_t index) {
-    const UsbSummary& summary = socket.port->summary();
+    const Summary& summary = socket.port->summary();
     const std::string id = fmt::format("0003:{:08X}:{:08X}", summary.vendor_id, summary.product_id);
     const std::string name = summary.manufacturer + " " + summary.product;
     const std::string phys = fmt::format("usb-0000:00:14.0-{}/input0", index + 1);
@@ -174,7 +174,7 @@ struct UmockdevSimulator::State {
   std::optional<core::FaultKind> fault;
 };
 
-UmockdevSimulator::UmockdevSimulator(std::vector<std::unique_ptr<UsbPort>> ports)
+UmockdevSimulator::UmockdevSimulator(std::vector<std::unique_ptr<Port>> ports)
     : state_(std::make_unique<State>(std::move(ports))) {}
 
 UmockdevSimulator::~UmockdevSimulator() = default;

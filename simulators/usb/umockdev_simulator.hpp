@@ -15,7 +15,7 @@ namespace yuragi::simulators::usb {
 class UmockdevSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error if this program does not run in umockdev (see is_in_umockdev()).
-  explicit UmockdevSimulator(std::vector<std::unique_ptr<UsbPort>> ports);
+  explicit UmockdevSimulator(std::vector<std::unique_ptr<Port>> ports);
   ~UmockdevSimulator() override;
 
   std::span<const core::FaultKind> known_faults() const override;

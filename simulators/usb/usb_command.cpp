@@ -20,7 +20,7 @@
 namespace yuragi::simulators::usb {
 namespace {
 
-struct UsbOptions {
+struct Options {
   std::vector<std::string> devices;
   std::string usbip = "127.0.0.1:3240";
   bool in_umockdev = false;
@@ -29,18 +29,18 @@ struct UsbOptions {
   core::CommonOptions common;
 };
 
-using MakeUsbDevice = std::unique_ptr<UsbDevice> (*)(const std::string& name, const UsbOptions& options);
+using MakeUsbDevice = std::unique_ptr<Device> (*)(const std::string& name, const Options& options);
 
 /// The devices, each in the same wind.
-std::vector<std::unique_ptr<UsbPort>> make_ports(const UsbOptions& options, MakeUsbDevice make) {
-  std::vector<std::unique_ptr<UsbPort>> ports;
+std::vector<std::unique_ptr<Port>> make_ports(const Options& options, MakeUsbDevice make) {
+  std::vector<std::unique_ptr<Port>> ports;
   for (const std::string& name : options.devices) {
-    ports.push_back(std::make_unique<UsbPort>(make(name, options), options.common.make_wind()));
+    ports.push_back(std::make_unique<Port>(make(name, options), options.common.make_wind()));
   }
   return ports;
 }
 
-void serve_usbip(const UsbOptions& options, MakeUsbDevice make) {
+void serve_usbip(const Options& options, MakeUsbDevice make) {
   const Address address = core::address_option("--usbip", options.usbip);
   UsbipServer server(address.host, address.port, make_ports(options, make));
 
@@ -52,7 +52,7 @@ void serve_usbip(const UsbOptions& options, MakeUsbDevice make) {
 
 #if YURAGI_UMOCKDEV
 /// Shows the devices to one program; ends when it ends, with its exit code.
-void launch_in_umockdev(const UsbOptions& options, MakeUsbDevice make) {
+void launch_in_umockdev(const Options& options, MakeUsbDevice make) {
   if (options.program.empty()) throw CLI::RequiredError("PROGRAM");
   if (!is_in_umockdev()) restart_in_umockdev();
   UmockdevSimulator simulator(make_ports(options, make));
@@ -63,7 +63,7 @@ void launch_in_umockdev(const UsbOptions& options, MakeUsbDevice make) {
 #endif
 
 CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::string& summary,
-                          const std::vector<std::string>& devices, const std::shared_ptr<UsbOptions>& options,
+                          const std::vector<std::string>& devices, const std::shared_ptr<Options>& options,
                           MakeUsbDevice make) {
   CLI::App* command = app.add_subcommand(name, summary);
   options->devices = {devices.front()};
@@ -108,11 +108,11 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
 
 extern const core::Command kHidCommand;
 const core::Command kHidCommand{[](CLI::App& app) {
-  auto options = std::make_shared<UsbOptions>();
+  auto options = std::make_shared<Options>();
   std::vector<std::string> names;
   for (const std::string_view name : hid_station_names()) names.emplace_back(name);
   CLI::App* command = add_usb_options(app, "hid", "USB weather stations", names, options,
-                                      [](const std::string& name, const UsbOptions& chosen) {
+                                      [](const std::string& name, const Options& chosen) {
                                         return make_hid_station(name, chosen.pace, chosen.common.synthetic.seed);
                                       });
   command->add_option("--pace", options->pace, "how many times faster than the real station it measures")
@@ -123,8 +123,8 @@ const core::Command kHidCommand{[](CLI::App& app) {
 extern const core::Command kUsbCommand;
 const core::Command kUsbCommand{[](CLI::App& app) {
   add_usb_options(app, "usb", "USB counters and converters with a cup anemometer and a wind vane", daq_names(),
-                  std::make_shared<UsbOptions>(),
-                  [](const std::string& name, const UsbOptions& /*asked*/) { return make_daq(name); });
+                  std::make_shared<Options>(),
+                  [](const std::string& name, const Options& /*asked*/) { return make_daq(name); });
 }};
 
 }  // namespace yuragi::simulators::usb

@@ -11,10 +11,10 @@
 
 namespace yuragi::simulators::usb {
 
-using UsbBytes = std::vector<std::uint8_t>;
+using Bytes = std::vector<std::uint8_t>;
 
 /// The 8 bytes that begin a control transfer (USB 2.0 specification, 9.3).
-struct UsbSetup {
+struct SetupPacket {
   std::uint8_t request_type = 0;
   std::uint8_t request = 0;
   std::uint16_t value = 0;
@@ -25,10 +25,10 @@ struct UsbSetup {
 };
 
 /// A device's descriptors, as the bytes that it would send (USB 2.0 specification, 9.5 and 9.6). One configuration.
-struct UsbDescriptors {
-  UsbBytes device;                   ///< 18 bytes
-  UsbBytes configuration;            ///< with interfaces, HID descriptors and end points behind it
-  UsbBytes hid_report;               ///< of interface 0; empty: no HID device
+struct Descriptors {
+  Bytes device;                      ///< 18 bytes
+  Bytes configuration;               ///< with interfaces, HID descriptors and end points behind it
+  Bytes hid_report;                  ///< of interface 0; empty: no HID device
   std::vector<std::string> strings;  ///< ASCII; number 1 first
 };
 
@@ -37,24 +37,24 @@ struct UsbDescriptors {
 ///
 /// Standard requests (descriptors, address, configuration) are answered for it by usb_standard.hpp: control() sees
 /// class and vendor requests only. Thread-safe: no.
-class UsbDevice {
+class Device {
  public:
-  virtual ~UsbDevice() = default;
+  virtual ~Device() = default;
 
-  virtual const UsbDescriptors& descriptors() const = 0;
+  virtual const Descriptors& descriptors() const = 0;
   virtual std::span<const core::FaultKind> known_faults() const = 0;
 
   /// Advances to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
-  /// kSilence of the whole device are played by UsbPort; wrong content is the device's own.
+  /// kSilence of the whole device are played by Port; wrong content is the device's own.
   virtual void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) = 0;
 
   /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host receives, at most
   /// `setup.length` bytes; nullopt for a request that the device refuses (a stall).
-  virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
+  virtual std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> data) = 0;
 
   /// The data that waits at an IN end point (its number without the direction bit), at most `max_size` bytes: one
   /// interrupt report, or bulk data. Nullopt: the host has to wait (NAK).
-  virtual std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
+  virtual std::optional<Bytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
 
   /// Takes data that the host sends to an OUT end point. False: refused (a stall).
   virtual bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;

@@ -11,17 +11,17 @@ namespace yuragi::simulators::usb {
 
 /// The host's end of a port, for several users of one device: each transfer is submitted with a function that takes its
 /// outcome. Thread-safe: no.
-class UsbHost {
+class Host {
  public:
-  using Then = std::function<void(const UsbOutcome&)>;
+  using Then = std::function<void(const Outcome&)>;
 
   /// `port` must outlive this.
-  explicit UsbHost(UsbPort& port) : port_(port) {}
+  explicit Host(Port& port) : port_(port) {}
 
-  UsbPort& port() const noexcept { return port_; }
+  Port& port() const noexcept { return port_; }
 
   /// `transfer.id` is chosen here, and returned.
-  std::uint64_t submit(UsbTransfer transfer, Then then) {
+  std::uint64_t submit(Transfer transfer, Then then) {
     transfer.id = ++last_id_;
     waiting_.emplace(transfer.id, std::move(then));
     port_.submit(std::move(transfer));
@@ -44,7 +44,7 @@ class UsbHost {
     for (int round = 0; round < kMaxRounds; ++round) {
       const auto outcomes = port_.take_outcomes();
       if (outcomes.empty()) return;
-      for (const UsbOutcome& outcome : outcomes) {
+      for (const Outcome& outcome : outcomes) {
         if (auto found = waiting_.extract(outcome.id)) found.mapped()(outcome);
       }
     }
@@ -53,7 +53,7 @@ class UsbHost {
  private:
   static constexpr int kMaxRounds = 64;  // a device that never stops talking must not keep the others waiting
 
-  UsbPort& port_;
+  Port& port_;
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, Then> waiting_;
 };

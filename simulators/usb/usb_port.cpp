@@ -19,7 +19,7 @@ constexpr int kMaxLost = 1000;
 
 }  // namespace
 
-UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, core::MeasuredWind wind)
+Port::Port(std::unique_ptr<Device> device, core::MeasuredWind wind)
     : device_(std::move(device)),
       control_pipe_(*device_),
       summary_(summary_of(device_->descriptors())),
@@ -32,7 +32,7 @@ UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, core::MeasuredWind wind)
   }
 }
 
-void UsbPort::advance(double time_s, std::optional<core::FaultKind> fault) {
+void Port::advance(double time_s, std::optional<core::FaultKind> fault) {
   moment_ = wind_.at(time_s, fault);
   const bool was_plugged_in = std::exchange(is_plugged_in_, fault != core::FaultKind::kUnplug);
   is_silent_ = fault == core::FaultKind::kSilence;
@@ -42,8 +42,8 @@ void UsbPort::advance(double time_s, std::optional<core::FaultKind> fault) {
   if (!was_plugged_in) lose_what_waits();
 }
 
-void UsbPort::lose_what_waits() {
-  for (const UsbEndpoint& endpoint : summary_.endpoints) {
+void Port::lose_what_waits() {
+  for (const Endpoint& endpoint : summary_.endpoints) {
     if ((endpoint.address & 0x80U) == 0) continue;
     for (int i = 0; i < kMaxLost; ++i) {
       if (!device_->in(endpoint.address & 0x0FU, endpoint.max_packet_size)) break;
@@ -51,24 +51,24 @@ void UsbPort::lose_what_waits() {
   }
 }
 
-void UsbPort::submit(UsbTransfer transfer) {
+void Port::submit(Transfer transfer) {
   if (is_plugged_in_ && waiting_.size() < kMaxWaiting) waiting_.push_back(std::move(transfer));
 }
 
-bool UsbPort::cancel(std::uint64_t id) {
-  return std::erase_if(waiting_, [id](const UsbTransfer& transfer) { return transfer.id == id; }) != 0;
+bool Port::cancel(std::uint64_t id) {
+  return std::erase_if(waiting_, [id](const Transfer& transfer) { return transfer.id == id; }) != 0;
 }
 
-void UsbPort::cancel_all() {
+void Port::cancel_all() {
   waiting_.clear();
 }
 
-std::vector<UsbOutcome> UsbPort::take_outcomes() {
-  std::vector<UsbOutcome> outcomes;
+std::vector<Outcome> Port::take_outcomes() {
+  std::vector<Outcome> outcomes;
   std::array<bool, 256> is_busy{};  // by end point address: one that waits keeps those behind it waiting
   for (auto transfer = waiting_.begin(); transfer != waiting_.end();) {
     bool& busy = is_busy[transfer->endpoint | (transfer->is_to_host && transfer->endpoint != 0 ? 0x80U : 0U)];
-    std::optional<UsbOutcome> outcome = busy ? std::nullopt : attempt(*transfer);
+    std::optional<Outcome> outcome = busy ? std::nullopt : attempt(*transfer);
     if (outcome) {
       outcomes.push_back(std::move(*outcome));
       transfer = waiting_.erase(transfer);
@@ -81,17 +81,17 @@ std::vector<UsbOutcome> UsbPort::take_outcomes() {
   return outcomes;
 }
 
-std::optional<UsbOutcome> UsbPort::attempt(const UsbTransfer& transfer) {
-  UsbOutcome outcome;
+std::optional<Outcome> Port::attempt(const Transfer& transfer) {
+  Outcome outcome;
   outcome.id = transfer.id;
-  const auto give = [&](std::optional<UsbBytes> data) {
+  const auto give = [&](std::optional<Bytes> data) {
     outcome.is_refused = !data;
     if (data) outcome.data = std::move(*data);
     outcome.size = outcome.data.size();
   };
 
   if (transfer.endpoint == 0) {
-    const bool gets_reply = !is_silent_ || !transfer.setup.is_to_host() || UsbControlPipe::is_standard(transfer.setup);
+    const bool gets_reply = !is_silent_ || !transfer.setup.is_to_host() || ControlPipe::is_standard(transfer.setup);
     if (!gets_reply) return std::nullopt;
     give(control_pipe_.control(transfer.setup, transfer.data));
     if (!outcome.is_refused && !transfer.setup.is_to_host()) outcome.size = transfer.data.size();
@@ -100,7 +100,7 @@ std::optional<UsbOutcome> UsbPort::attempt(const UsbTransfer& transfer) {
       outcome.is_refused = true;
       return outcome;
     }
-    std::optional<UsbBytes> data = is_silent_ ? std::nullopt : device_->in(transfer.endpoint, transfer.max_size);
+    std::optional<Bytes> data = is_silent_ ? std::nullopt : device_->in(transfer.endpoint, transfer.max_size);
     if (!data) return std::nullopt;
     if (data->size() > transfer.max_size) data->resize(transfer.max_size);
     give(std::move(data));

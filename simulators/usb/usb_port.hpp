@@ -15,20 +15,20 @@
 namespace yuragi::simulators::usb {
 
 /// A transfer of the host to or from an end point. Number 0 is the control pipe; only there `setup` is used.
-struct UsbTransfer {
+struct Transfer {
   std::uint64_t id = 0;  ///< chosen by the submitter
   std::uint8_t endpoint = 0;
   bool is_to_host = false;
-  UsbSetup setup;
-  UsbBytes data;             ///< what the host sends
+  SetupPacket setup;
+  Bytes data;                ///< what the host sends
   std::size_t max_size = 0;  ///< the most that it would receive
 };
 
 /// The outcome of a transfer.
-struct UsbOutcome {
+struct Outcome {
   std::uint64_t id = 0;
   bool is_refused = false;  ///< stalled; the members below are empty
-  UsbBytes data;            ///< what the host receives
+  Bytes data;               ///< what the host receives
   std::size_t size = 0;     ///< bytes transferred, in either direction
 };
 
@@ -36,12 +36,12 @@ struct UsbOutcome {
 /// outcomes come out, at once or when the device has data. Two faults are played here, for every device alike: a silent
 /// device receives and sends nothing (except its descriptors), an unplugged one does not exist, and its data is lost.
 /// Pure. Thread-safe: no.
-class UsbPort {
+class Port {
  public:
-  UsbPort(std::unique_ptr<UsbDevice> device, core::MeasuredWind wind);
+  Port(std::unique_ptr<Device> device, core::MeasuredWind wind);
 
-  const UsbSummary& summary() const noexcept { return summary_; }
-  const UsbDescriptors& descriptors() const { return device_->descriptors(); }
+  const Summary& summary() const noexcept { return summary_; }
+  const Descriptors& descriptors() const { return device_->descriptors(); }
   const core::PlayedMoment& moment() const noexcept { return moment_; }
   /// The faults of the device, and those of its port.
   std::span<const core::FaultKind> known_faults() const noexcept { return known_faults_; }
@@ -50,29 +50,29 @@ class UsbPort {
   void advance(double time_s, std::optional<core::FaultKind> fault);
   bool is_plugged_in() const noexcept { return is_plugged_in_; }
 
-  void submit(UsbTransfer transfer);
+  void submit(Transfer transfer);
   /// Drops a transfer that has no outcome yet; false: it is not waiting.
   bool cancel(std::uint64_t id);
   /// Drops all transfers, when the host has gone.
   void cancel_all();
 
   /// The outcomes since the last call. Transfers to one end point complete in the order in which they were submitted.
-  std::vector<UsbOutcome> take_outcomes();
+  std::vector<Outcome> take_outcomes();
 
  private:
-  std::optional<UsbOutcome> attempt(const UsbTransfer& transfer);
+  std::optional<Outcome> attempt(const Transfer& transfer);
   void lose_what_waits();
 
-  std::unique_ptr<UsbDevice> device_;
-  UsbControlPipe control_pipe_;
-  UsbSummary summary_;
+  std::unique_ptr<Device> device_;
+  ControlPipe control_pipe_;
+  Summary summary_;
   std::vector<core::FaultKind> known_faults_;
   std::vector<core::FaultKind> device_faults_;
   core::MeasuredWind wind_;
   core::PlayedMoment moment_;
   bool is_plugged_in_ = true;
   bool is_silent_ = false;
-  std::deque<UsbTransfer> waiting_;
+  std::deque<Transfer> waiting_;
 };
 
 }  // namespace yuragi::simulators::usb

@@ -47,9 +47,9 @@ void each_descriptor(std::span<const std::uint8_t> configuration, Use&& use) {
   }
 }
 
-UsbBytes string_descriptor(const std::string& text) {
+Bytes string_descriptor(const std::string& text) {
   const std::size_t length = std::min(text.size(), kMaxString);
-  UsbBytes bytes = {static_cast<std::uint8_t>(2 + 2 * length), kStringDescriptor};
+  Bytes bytes = {static_cast<std::uint8_t>(2 + 2 * length), kStringDescriptor};
   for (const char c : text.substr(0, length)) {
     bytes.push_back(static_cast<std::uint8_t>(c));
     bytes.push_back(0);
@@ -59,18 +59,18 @@ UsbBytes string_descriptor(const std::string& text) {
 
 }  // namespace
 
-const UsbEndpoint* UsbSummary::endpoint(std::uint8_t address) const {
-  const auto found = std::ranges::find(endpoints, address, &UsbEndpoint::address);
+const Endpoint* Summary::endpoint(std::uint8_t address) const {
+  const auto found = std::ranges::find(endpoints, address, &Endpoint::address);
   return found == endpoints.end() ? nullptr : &*found;
 }
 
-UsbSummary summary_of(const UsbDescriptors& descriptors) {
+Summary summary_of(const Descriptors& descriptors) {
   const std::span<const std::uint8_t> device = descriptors.device;
   const auto string_at = [&](std::size_t at) {
     const std::size_t number = byte_at(device, at);
     return number >= 1 && number <= descriptors.strings.size() ? descriptors.strings[number - 1] : std::string();
   };
-  UsbSummary summary;
+  Summary summary;
   summary.vendor_id = word_at(device, 8);
   summary.product_id = word_at(device, 10);
   summary.release = word_at(device, 12);
@@ -95,31 +95,31 @@ UsbSummary summary_of(const UsbDescriptors& descriptors) {
   return summary;
 }
 
-UsbSetup usb_setup_of(std::span<const std::uint8_t, 8> bytes) {
+SetupPacket usb_setup_of(std::span<const std::uint8_t, 8> bytes) {
   return {bytes[0], bytes[1], word_at(bytes, 2), word_at(bytes, 4), word_at(bytes, 6)};
 }
 
-UsbControlPipe::UsbControlPipe(UsbDevice& device)
+ControlPipe::ControlPipe(Device& device)
     : device_(device), configuration_value_(summary_of(device.descriptors()).configuration_value) {}
 
-std::optional<UsbBytes> UsbControlPipe::control(const UsbSetup& setup, std::span<const std::uint8_t> data) {
-  std::optional<UsbBytes> reply = is_standard(setup) ? standard(setup) : device_.control(setup, data);
+std::optional<Bytes> ControlPipe::control(const SetupPacket& setup, std::span<const std::uint8_t> data) {
+  std::optional<Bytes> reply = is_standard(setup) ? standard(setup) : device_.control(setup, data);
   if (reply) reply->resize(setup.is_to_host() ? std::min<std::size_t>(reply->size(), setup.length) : 0);
   return reply;
 }
 
-std::optional<UsbBytes> UsbControlPipe::standard(const UsbSetup& setup) {
+std::optional<Bytes> ControlPipe::standard(const SetupPacket& setup) {
   // Reading and writing share no request number: one that goes the wrong way is refused.
   if (setup.is_to_host()) {
     switch (setup.request) {
       case kGetStatus:
-        return UsbBytes{0, 0};
+        return Bytes{0, 0};
       case kGetDescriptor:
         return descriptor(setup);
       case kGetConfiguration:
-        return UsbBytes{configuration_};
+        return Bytes{configuration_};
       case kGetInterface:
-        return UsbBytes{0};
+        return Bytes{0};
       default:
         return std::nullopt;
     }
@@ -128,20 +128,20 @@ std::optional<UsbBytes> UsbControlPipe::standard(const UsbSetup& setup) {
     case kClearFeature:
     case kSetFeature:
     case kSetAddress:
-      return UsbBytes{};
+      return Bytes{};
     case kSetConfiguration:
       if (setup.value != 0 && setup.value != configuration_value_) return std::nullopt;
       configuration_ = static_cast<std::uint8_t>(setup.value);
-      return UsbBytes{};
+      return Bytes{};
     case kSetInterface:
-      return setup.value == 0 ? std::optional(UsbBytes{}) : std::nullopt;
+      return setup.value == 0 ? std::optional(Bytes{}) : std::nullopt;
     default:
       return std::nullopt;
   }
 }
 
-std::optional<UsbBytes> UsbControlPipe::descriptor(const UsbSetup& setup) const {
-  const UsbDescriptors& own = device_.descriptors();
+std::optional<Bytes> ControlPipe::descriptor(const SetupPacket& setup) const {
+  const Descriptors& own = device_.descriptors();
   const auto type = static_cast<std::uint8_t>(setup.value >> 8U);
   const std::size_t number = setup.value & 0xFFU;
   switch (type) {
@@ -151,14 +151,14 @@ std::optional<UsbBytes> UsbControlPipe::descriptor(const UsbSetup& setup) const 
       return number == 0 ? std::optional(own.configuration) : std::nullopt;
     case kStringDescriptor:
       if (number == 0) {
-        return UsbBytes{4, kStringDescriptor, kLanguageEnglish & 0xFFU, kLanguageEnglish >> 8U};
+        return Bytes{4, kStringDescriptor, kLanguageEnglish & 0xFFU, kLanguageEnglish >> 8U};
       }
       return number <= own.strings.size() ? std::optional(string_descriptor(own.strings[number - 1])) : std::nullopt;
     case kHidReportDescriptor:
       if (own.hid_report.empty() || setup.index != 0) return std::nullopt;
       return own.hid_report;
     case kHidDescriptor: {
-      std::optional<UsbBytes> found;
+      std::optional<Bytes> found;
       each_descriptor(own.configuration, [&](std::uint8_t inner_type, std::span<const std::uint8_t> bytes) {
         if (inner_type == kHidDescriptor && !found) found.emplace(bytes.begin(), bytes.end());
       });

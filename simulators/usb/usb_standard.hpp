@@ -12,7 +12,7 @@
 namespace yuragi::simulators::usb {
 
 /// An interface as the kernel shows it in sysfs, and a USB/IP server in its list.
-struct UsbInterface {
+struct Interface {
   std::uint8_t number = 0;
   std::uint8_t device_class = 0;
   std::uint8_t subclass = 0;
@@ -20,14 +20,14 @@ struct UsbInterface {
 };
 
 /// An end point as the configuration describes it.
-struct UsbEndpoint {
+struct Endpoint {
   std::uint8_t address = 0;  ///< its number, with bit 7 set for one to the host
   std::uint8_t type = 0;     ///< 0 control, 1 isochronous, 2 bulk, 3 interrupt
   std::uint16_t max_packet_size = 0;
 };
 
 /// The fields of a device's descriptors. What they lack is zero.
-struct UsbSummary {
+struct Summary {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
   std::uint16_t release = 0;  ///< bcdDevice
@@ -37,39 +37,39 @@ struct UsbSummary {
   std::uint8_t configurations = 0;
   std::uint8_t configuration_value = 0;
   std::string manufacturer, product, serial;
-  std::vector<UsbInterface> interfaces;
-  std::vector<UsbEndpoint> endpoints;
+  std::vector<Interface> interfaces;
+  std::vector<Endpoint> endpoints;
 
   /// The end point of that address; nullptr: there is none.
-  const UsbEndpoint* endpoint(std::uint8_t address) const;
+  const Endpoint* endpoint(std::uint8_t address) const;
 };
 
-UsbSummary summary_of(const UsbDescriptors& descriptors);
+Summary summary_of(const Descriptors& descriptors);
 
 /// The 8 bytes that begin a control transfer, read.
-UsbSetup usb_setup_of(std::span<const std::uint8_t, 8> bytes);
+SetupPacket usb_setup_of(std::span<const std::uint8_t, 8> bytes);
 
 /// The control pipe of a simulated device: answers the standard requests (USB 2.0 specification, 9.4) from its
 /// descriptors, and passes the others to it. Any bytes may come from the host. Thread-safe: no.
-class UsbControlPipe {
+class ControlPipe {
  public:
   /// `device` must outlive this.
-  explicit UsbControlPipe(UsbDevice& device);
+  explicit ControlPipe(Device& device);
 
   /// True: a request that is answered here and not passed to the device.
-  static bool is_standard(const UsbSetup& setup) noexcept { return (setup.request_type & 0x60U) == 0; }
+  static bool is_standard(const SetupPacket& setup) noexcept { return (setup.request_type & 0x60U) == 0; }
 
-  /// As UsbDevice::control(), and never more than `setup.length` bytes.
-  std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data);
+  /// As Device::control(), and never more than `setup.length` bytes.
+  std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> data);
 
   /// The configuration that the host has set; 0: none yet.
   std::uint8_t configuration() const noexcept { return configuration_; }
 
  private:
-  std::optional<UsbBytes> standard(const UsbSetup& setup);
-  std::optional<UsbBytes> descriptor(const UsbSetup& setup) const;
+  std::optional<Bytes> standard(const SetupPacket& setup);
+  std::optional<Bytes> descriptor(const SetupPacket& setup) const;
 
-  UsbDevice& device_;
+  Device& device_;
   std::uint8_t configuration_value_ = 0;
   std::uint8_t configuration_ = 0;
 };

@@ -19,7 +19,7 @@ constexpr int kMaxBuffer = 64 * 1024;
 
 }  // namespace
 
-UsbfsNode::UsbfsNode(UsbHost& host, const std::string& path)
+UsbfsNode::UsbfsNode(Host& host, const std::string& path)
     : host_(&host), readiness_(path, ReadinessNode::Direction::kWritable) {}
 
 void UsbfsNode::serve(double /*time_s*/) {
@@ -85,7 +85,7 @@ void UsbfsNode::submit(ProgramCall call) {
   if (bytes.size() != length) return call.fail(EFAULT);
 
   // As a transfer.
-  UsbTransfer transfer;
+  Transfer transfer;
   transfer.endpoint = head.endpoint & 0x0FU;
   transfer.is_to_host = (head.endpoint & 0x80U) != 0;
   switch (head.type) {
@@ -108,7 +108,7 @@ void UsbfsNode::submit(ProgramCall call) {
 
   const std::uintptr_t address = urb.memory.address();
   urb.transfer =
-      host_->submit(std::move(transfer), [this, address](const UsbOutcome& outcome) { finish(address, outcome); });
+      host_->submit(std::move(transfer), [this, address](const Outcome& outcome) { finish(address, outcome); });
   under_way_.insert_or_assign(address, std::move(urb));
   call.reply(0);
 }
@@ -133,7 +133,7 @@ void UsbfsNode::reap(ProgramCall call) {
   readiness_.set_ready(host_ == nullptr || !done_.empty());
 }
 
-void UsbfsNode::finish(std::uintptr_t address, const UsbOutcome& outcome) {
+void UsbfsNode::finish(std::uintptr_t address, const Outcome& outcome) {
   if (const auto found = under_way_.find(address); found != under_way_.end()) {
     found->second.buffer.write(found->second.header_size, outcome.data);
   }

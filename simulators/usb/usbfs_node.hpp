@@ -17,7 +17,7 @@ namespace yuragi::simulators::usb {
 class UsbfsNode final : public EmulatedNode {
  public:
   /// `path`: the node's file inside the testbed. `host` must outlive unplug().
-  UsbfsNode(UsbHost& host, const std::string& path);
+  UsbfsNode(Host& host, const std::string& path);
 
   void serve(double time_s) override;
   void unplug() override;
@@ -35,10 +35,10 @@ class UsbfsNode final : public EmulatedNode {
   void submit(ProgramCall call);
   void discard(ProgramCall call);
   void reap(ProgramCall call);
-  void finish(std::uintptr_t address, const UsbOutcome& outcome);
+  void finish(std::uintptr_t address, const Outcome& outcome);
   void finish(std::uintptr_t address, int status, std::size_t size);
 
-  UsbHost* host_;
+  Host* host_;
   ReadinessNode readiness_;
   std::map<std::uintptr_t, Urb> under_way_;  // by the URB's address in the program
   std::deque<Urb> done_;

@@ -52,26 +52,26 @@ std::uint32_t long_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return (std::uint32_t{usbip_word_at(bytes, at)} << 16U) | usbip_word_at(bytes, at + 2);
 }
 
-void put_word(UsbBytes& bytes, std::uint16_t value) {
+void put_word(Bytes& bytes, std::uint16_t value) {
   bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
   bytes.push_back(static_cast<std::uint8_t>(value));
 }
 
-void put_long(UsbBytes& bytes, std::uint32_t value) {
+void put_long(Bytes& bytes, std::uint32_t value) {
   put_word(bytes, static_cast<std::uint16_t>(value >> 16U));
   put_word(bytes, static_cast<std::uint16_t>(value));
 }
 
 /// A text in a field of a fixed size, with at least one zero at its end.
-void put_text(UsbBytes& bytes, std::string_view text, std::size_t size) {
+void put_text(Bytes& bytes, std::string_view text, std::size_t size) {
   const std::size_t end = bytes.size() + size;
   text = text.substr(0, size - 1);
   bytes.insert(bytes.end(), text.begin(), text.end());
   bytes.resize(end);
 }
 
-void put_record(UsbBytes& bytes, const UsbipOffer& offer) {
-  const UsbSummary& summary = offer.summary;
+void put_record(Bytes& bytes, const UsbipOffer& offer) {
+  const Summary& summary = offer.summary;
   put_text(bytes, "/sys/devices/simulated/usb1/" + offer.bus_id, kPathSize);
   put_text(bytes, offer.bus_id, kBusIdSize);
   put_long(bytes, kBus);
@@ -87,8 +87,8 @@ void put_record(UsbBytes& bytes, const UsbipOffer& offer) {
   }
 }
 
-UsbBytes reply_head(std::uint16_t code, std::uint32_t status) {
-  UsbBytes bytes;
+Bytes reply_head(std::uint16_t code, std::uint32_t status) {
+  Bytes bytes;
   put_word(bytes, kVersion);
   put_word(bytes, code);
   put_long(bytes, status);
@@ -148,12 +148,12 @@ Result<UsbipTaken, Failure> take_usbip_message(UsbipPhase phase, std::span<const
   return phase == UsbipPhase::kRequests ? take_request(bytes) : take_transfer(bytes);
 }
 
-UsbBytes usbip_list_reply(std::span<const UsbipOffer> offers) {
-  UsbBytes bytes = reply_head(kReplyList, 0);
+Bytes usbip_list_reply(std::span<const UsbipOffer> offers) {
+  Bytes bytes = reply_head(kReplyList, 0);
   put_long(bytes, static_cast<std::uint32_t>(offers.size()));
   for (const UsbipOffer& offer : offers) {
     put_record(bytes, offer);
-    for (const UsbInterface& interface : offer.summary.interfaces) {
+    for (const Interface& interface : offer.summary.interfaces) {
       for (const std::uint8_t byte :
            {interface.device_class, interface.subclass, interface.protocol, std::uint8_t{0}}) {
         bytes.push_back(byte);
@@ -163,16 +163,16 @@ UsbBytes usbip_list_reply(std::span<const UsbipOffer> offers) {
   return bytes;
 }
 
-UsbBytes usbip_import_reply(const UsbipOffer* offer, bool is_taken) {
+Bytes usbip_import_reply(const UsbipOffer* offer, bool is_taken) {
   if (offer == nullptr || is_taken) return reply_head(kReplyImport, is_taken ? kStatusTaken : kStatusNone);
-  UsbBytes bytes = reply_head(kReplyImport, 0);
+  Bytes bytes = reply_head(kReplyImport, 0);
   put_record(bytes, *offer);
   return bytes;
 }
 
-UsbBytes usbip_submit_reply(std::uint32_t number, std::int32_t status, std::size_t size,
-                            std::span<const std::uint8_t> data) {
-  UsbBytes bytes;
+Bytes usbip_submit_reply(std::uint32_t number, std::int32_t status, std::size_t size,
+                         std::span<const std::uint8_t> data) {
+  Bytes bytes;
   put_long(bytes, kSubmitReply);
   put_long(bytes, number);
   bytes.resize(20);
@@ -183,8 +183,8 @@ UsbBytes usbip_submit_reply(std::uint32_t number, std::int32_t status, std::size
   return bytes;
 }
 
-UsbBytes usbip_unlink_reply(std::uint32_t number, std::int32_t status) {
-  UsbBytes bytes;
+Bytes usbip_unlink_reply(std::uint32_t number, std::int32_t status) {
+  Bytes bytes;
   put_long(bytes, kUnlinkReply);
   put_long(bytes, number);
   bytes.resize(20);

@@ -34,8 +34,8 @@ struct UsbipSubmit {
   std::uint8_t endpoint = 0;
   bool is_to_host = false;
   std::uint32_t length = 0;  ///< how much the host sends, or would receive
-  UsbSetup setup;
-  UsbBytes data;  ///< what it sends
+  SetupPacket setup;
+  Bytes data;  ///< what it sends
 };
 
 /// Cancels the transfer of that number.
@@ -63,12 +63,12 @@ Result<UsbipTaken, Failure> take_usbip_message(UsbipPhase phase, std::span<const
 struct UsbipOffer {
   std::string bus_id;  ///< "1-1"
   std::uint32_t device_number = 1;
-  UsbSummary summary;
+  Summary summary;
 };
 
-UsbBytes usbip_list_reply(std::span<const UsbipOffer> offers);
+Bytes usbip_list_reply(std::span<const UsbipOffer> offers);
 /// `offer` is nullptr if there is no such device, or if another host has it (`is_taken`).
-UsbBytes usbip_import_reply(const UsbipOffer* offer, bool is_taken);
+Bytes usbip_import_reply(const UsbipOffer* offer, bool is_taken);
 
 /// Statuses of transfers: the kernel's error numbers, negative.
 inline constexpr std::int32_t kUsbipDone = 0;
@@ -76,8 +76,8 @@ inline constexpr std::int32_t kUsbipStalled = -32;    // EPIPE
 inline constexpr std::int32_t kUsbipUnlinked = -104;  // ECONNRESET
 
 /// `data` is what the host receives; `size` the bytes transferred, in either direction.
-UsbBytes usbip_submit_reply(std::uint32_t number, std::int32_t status, std::size_t size,
-                            std::span<const std::uint8_t> data);
-UsbBytes usbip_unlink_reply(std::uint32_t number, std::int32_t status);
+Bytes usbip_submit_reply(std::uint32_t number, std::int32_t status, std::size_t size,
+                         std::span<const std::uint8_t> data);
+Bytes usbip_unlink_reply(std::uint32_t number, std::int32_t status);
 
 }  // namespace yuragi::simulators::usb

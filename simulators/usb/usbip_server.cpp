@@ -31,13 +31,13 @@ struct UsbipServer::State {
     tcp::socket socket;
     UsbipPhase phase = UsbipPhase::kRequests;
     std::optional<std::size_t> device;  // the port that it has imported
-    UsbBytes in;
-    UsbBytes out;
+    Bytes in;
+    Bytes out;
     bool is_gone = false;
     bool ends_after_reply = false;
   };
 
-  State(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> all)
+  State(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<Port>> all)
       : ports(std::move(all)), known_faults(faults_of(ports)) {
     try {
       acceptor.open(tcp::v4());
@@ -153,13 +153,13 @@ struct UsbipServer::State {
   }
 
   void send_outcomes(Client& client) const {
-    for (const UsbOutcome& outcome : ports[*client.device]->take_outcomes()) {
+    for (const Outcome& outcome : ports[*client.device]->take_outcomes()) {
       queue(client, usbip_submit_reply(static_cast<std::uint32_t>(outcome.id),
                                        outcome.is_refused ? kUsbipStalled : kUsbipDone, outcome.size, outcome.data));
     }
   }
 
-  static void queue(Client& client, const UsbBytes& bytes) {
+  static void queue(Client& client, const Bytes& bytes) {
     client.out.insert(client.out.end(), bytes.begin(), bytes.end());
   }
 
@@ -172,14 +172,14 @@ struct UsbipServer::State {
 
   asio::io_context context;  // never run: every call here returns at once
   tcp::acceptor acceptor{context};
-  std::vector<std::unique_ptr<UsbPort>> ports;
+  std::vector<std::unique_ptr<Port>> ports;
   std::vector<core::FaultKind> known_faults;
   std::vector<std::unique_ptr<Client>> clients;
   std::optional<core::FaultKind> fault;
   std::string trouble;  // what was wrong with the last connection that was closed
 };
 
-UsbipServer::UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> ports)
+UsbipServer::UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<Port>> ports)
     : state_(std::make_unique<State>(host, port, std::move(ports))) {}
 
 UsbipServer::~UsbipServer() = default;
@@ -228,7 +228,7 @@ std::string UsbipServer::status() const {
                      state.trouble.empty() ? "" : ", given up: ", state.trouble);
 }
 
-std::vector<core::FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports) {
+std::vector<core::FaultKind> faults_of(std::span<const std::unique_ptr<Port>> ports) {
   std::vector<core::FaultKind> all;
   for (const auto& port : ports) {
     for (const core::FaultKind kind : port->known_faults()) {

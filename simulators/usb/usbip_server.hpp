@@ -16,7 +16,7 @@ namespace yuragi::simulators::usb {
 class UsbipServer final : public core::Simulator {
  public:
   /// Listens at once; port 0 takes a free one. Throws std::runtime_error for an address that cannot be listened on.
-  UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<UsbPort>> ports);
+  UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<Port>> ports);
   ~UsbipServer() override;
 
   /// The port that it listens on.
@@ -33,6 +33,6 @@ class UsbipServer final : public core::Simulator {
 };
 
 /// The faults that any of these devices can play; a device ignores a fault that it does not know.
-std::vector<core::FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports);
+std::vector<core::FaultKind> faults_of(std::span<const std::unique_ptr<Port>> ports);
 
 }  // namespace yuragi::simulators::usb

@@ -64,8 +64,8 @@ class Wmr100 final : public HidModel {
 
  private:
   /// A frame with its sum, without ff ff.
-  UsbBytes frame(std::uint8_t kind) {
-    UsbBytes bytes;
+  Bytes frame(std::uint8_t kind) {
+    Bytes bytes;
     switch (kind) {
       case 0x48: {
         const auto average = static_cast<unsigned>(std::lround(10.0 * wind().speed_m_s)) & 0xFFFU;
@@ -103,7 +103,7 @@ class Wmr100 final : public HidModel {
     return bytes;
   }
 
-  void queue_frame(UsbBytes bytes) {
+  void queue_frame(Bytes bytes) {
     if (suffers(core::FaultKind::kGarbage)) bytes = random_bytes(bytes.size());
     if (suffers(core::FaultKind::kPartial)) bytes.resize(bytes.size() / 2);
     bytes.insert(bytes.begin(), {0xFF, 0xFF});
@@ -114,7 +114,7 @@ class Wmr100 final : public HidModel {
     for (std::size_t at = 0; at < bytes.size();) {
       const std::size_t wanted = suffers(core::FaultKind::kSplit) ? 1 : 1 + random_below(3);
       const std::size_t count = std::min(wanted, bytes.size() - at);
-      UsbBytes report(8);
+      Bytes report(8);
       report[0] = static_cast<std::uint8_t>(suffers(core::FaultKind::kGarbage) ? random_below(256) : count);
       std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
       queue_report(std::move(report), report_from_s_ - now_s());
@@ -131,7 +131,7 @@ class Wmr100 final : public HidModel {
 
 }  // namespace
 
-std::unique_ptr<UsbDevice> make_wmr100(const HidModelOptions& options) {
+std::unique_ptr<Device> make_wmr100(const HidModelOptions& options) {
   return std::make_unique<Wmr100>(options);
 }
 

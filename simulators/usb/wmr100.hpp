@@ -7,6 +7,6 @@
 namespace yuragi::simulators::usb {
 
 /// An Oregon Scientific WMR100 console with its wind, thermometer, pressure and clock frames.
-std::unique_ptr<UsbDevice> make_wmr100(const HidModelOptions& options);
+std::unique_ptr<Device> make_wmr100(const HidModelOptions& options);
 
 }  // namespace yuragi::simulators::usb

@@ -25,7 +25,7 @@ constexpr std::array kWmr300Faults = {core::FaultKind::kSilence, core::FaultKind
 constexpr std::array<std::uint8_t, 5> kHeartbeat = {0xA6, 0x91, 0xCA, 0x45, 0x52};
 constexpr std::array<std::uint8_t, 6> kBegin = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
 constexpr std::array<std::uint8_t, 3> kAcknowledgement = {0x41, 0x43, 0x4B};
-constexpr UsbBytes::size_type kWmr300Report = 64;
+constexpr Bytes::size_type kWmr300Report = 64;
 constexpr double kRunsOnFor_s = 100.0;
 
 struct PacketKind {
@@ -80,13 +80,13 @@ class Wmr300 final : public HidModel {
   }
 
  private:
-  static UsbBytes who_it_is() {
+  static Bytes who_it_is() {
     return {0x57, 0x4D, 0x52, 0x33, 0x30, 0x30, 0x2C, 0x41, 0x30, 0x30, 0x32, 0x2C,
             0x0E, 0xC1, 0x00, 0x00, 0x2C, 0x67, 0x17, 0x2C, 0x4B, 0x2C, 0x52, 0x2C};
   }
 
-  UsbBytes packet(const PacketKind& kind) {
-    UsbBytes bytes(kind.size, 0x00);
+  Bytes packet(const PacketKind& kind) {
+    Bytes bytes(kind.size, 0x00);
     const auto put = [&bytes](std::size_t at, double number) {
       const auto value = static_cast<unsigned>(std::lround(number));
       bytes[at] = static_cast<std::uint8_t>(value >> 8U);
@@ -120,7 +120,7 @@ class Wmr300 final : public HidModel {
     return bytes;
   }
 
-  void queue_packet(UsbBytes bytes) {
+  void queue_packet(Bytes bytes) {
     if (suffers(core::FaultKind::kPartial)) {
       bytes.resize(bytes.size() / 2);  // a short packet ends the report
     } else {
@@ -138,7 +138,7 @@ class Wmr300 final : public HidModel {
 
 }  // namespace
 
-std::unique_ptr<UsbDevice> make_wmr300(const HidModelOptions& options) {
+std::unique_ptr<Device> make_wmr300(const HidModelOptions& options) {
   return std::make_unique<Wmr300>(options);
 }
 

@@ -7,6 +7,6 @@
 namespace yuragi::simulators::usb {
 
 /// An Oregon Scientific WMR300 console with its wind, thermometer and rain packets.
-std::unique_ptr<UsbDevice> make_wmr300(const HidModelOptions& options);
+std::unique_ptr<Device> make_wmr300(const HidModelOptions& options);
 
 }  // namespace yuragi::simulators::usb

@@ -69,7 +69,7 @@ void record(std::span<char*> arguments) {
   const std::uint64_t at_once =
       std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::chrono::hours(6) / interval), 1, kMaxAtOnce);
   for (Nanoseconds since{0}; since < days; since += interval) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time = {begin.mono + since, begin.utc + since};
     reading.speed_m_s = 0.1 * static_cast<double>(std::chrono::floor<std::chrono::days>(since).count());
     reading.direction_deg = std::chrono::duration<double>(since % std::chrono::days(1)).count() / 250.0;

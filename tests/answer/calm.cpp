@@ -9,11 +9,11 @@ Figures calm_figures(const SceneTable& table, std::uint64_t seed) {
   constexpr int kTicks = 120;
   if (!described(table.scene).is_still_in_calm) return {};
   const std::unique_ptr<scenes::Scene> scene = make_scene(table, seed);
-  for (int tick = 0; tick < kTicks; ++tick) scene->tick(wind::WindVector{}, kTick_s);
+  for (int tick = 0; tick < kTicks; ++tick) scene->tick(wind::Vector{}, kTick_s);
 
   const pose::Pose rest = pose::rest_pose(scene->skeleton());
-  const pose::PoseArrays<const float> is(scene->pose());
-  const pose::PoseArrays<const float> was(rest);
+  const pose::Arrays<const float> is(scene->pose());
+  const pose::Arrays<const float> was(rest);
   std::size_t moved = 0;
   for (std::size_t array = 0; array < is.size(); ++array) {
     for (std::size_t i = 0; i < is[array].size(); ++i) moved += is[array][i] == was[array][i] ? 0U : 1U;

@@ -196,11 +196,11 @@ std::array<Figures, kBeauforts> curtain_after_a_step(const SceneTable& table, st
   const std::unique_ptr<scenes::Scene> scene = make_scene(table, seed);
   ClothThreads threads(std::get<pose::GridSkeleton>(scene->skeleton()), 9);
   pose::Kinematics joints(scene->skeleton());
-  const wind::ground::GroundWind breeze = wind::wind_from(kMeanSpeed_m_s[1], 0.0);
+  const wind::ground::Wind breeze = wind::wind_from(kMeanSpeed_m_s[1], 0.0);
   for (int tick = 0; tick < kBlownTicks; ++tick) scene->tick(breeze, kTick_s);
   Series way_m;
   for (int tick = 0; tick < kCalmTicks; ++tick) {
-    scene->tick(wind::WindVector{}, kTick_s);
+    scene->tick(wind::Vector{}, kTick_s);
     joints.run(scene->pose());
     way_m.push_back(static_cast<float>(threads.tip_way(joints).south));
   }

@@ -31,7 +31,7 @@ double turn_deg(const SceneTable& table, std::size_t beaufort_index, double dire
     joints.run(scene->pose());
     const Horizontal way = meter->direction(scene->pose(), joints);
     pointed = {pointed.east + way.east, pointed.south + way.south};
-    const wind::WindVector air = wind.at_origin();
+    const wind::Vector air = wind.at_origin();
     blown = {blown.east + air.u_m_s, blown.south - air.v_m_s};
   }
   const double all = blown.length();

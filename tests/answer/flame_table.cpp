@@ -173,7 +173,7 @@ std::array<Figures, kBeauforts> flame_in_calm(const SceneTable& table, std::uint
   WindRecord calm;
   Horizontal sum;
   for (int tick = 0; tick < kStartTicks + kRecordTicks; ++tick) {
-    scene->tick(wind::WindVector{}, kTick_s);
+    scene->tick(wind::Vector{}, kTick_s);
     if (tick < kStartTicks) continue;
     joints.run(scene->pose());
     meter->take(static_cast<std::size_t>(tick - kStartTicks), scene->pose(), joints);

@@ -13,15 +13,15 @@ std::size_t ticks_in(double seconds) {
 
 }  // namespace
 
-const scenes::SceneDescription& described(std::string_view name) {
-  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
+const scenes::Description& described(std::string_view name) {
+  for (const scenes::Description* scene : scenes::scene_table()) {
     if (scene->name == name) return *scene;
   }
   throw std::invalid_argument("no scene is called " + std::string(name));
 }
 
 std::unique_ptr<scenes::Scene> make_scene(const SceneTable& table, std::uint64_t seed) {
-  const scenes::SceneDescription& scene = described(table.scene);
+  const scenes::Description& scene = described(table.scene);
   return scene.make(ParameterValues::resolve(scene.parameters, table.parameters).value(),
                     {.seed = seed, .gusts = test_gusts()});
 }

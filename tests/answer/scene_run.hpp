@@ -13,7 +13,7 @@
 namespace yuragi::answer {
 
 /// The scene that scene_table() has under this name. Throws std::invalid_argument without one.
-const scenes::SceneDescription& described(std::string_view name);
+const scenes::Description& described(std::string_view name);
 
 /// The scene of a table, made as the daemon makes it, with the gusts of the wind that it will be given.
 std::unique_ptr<scenes::Scene> make_scene(const SceneTable& table, std::uint64_t seed);

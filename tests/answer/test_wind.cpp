@@ -38,7 +38,7 @@ TestWind::TestWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, con
   wind_.everywhere = mean_ + noise_->everywhere(wind_.gusts);
 }
 
-const wind::ground::GroundWind& TestWind::step(double dt_s) noexcept {
+const wind::ground::Wind& TestWind::step(double dt_s) noexcept {
   noise_->carry(wind_.gusts.carried, mean_.u_m_s, -mean_.v_m_s, dt_s, turnover_m23_s_);
   wind_.everywhere = mean_ + noise_->everywhere(wind_.gusts);
   wind_.tick = ++tick_;

@@ -26,7 +26,7 @@ struct TestWindSettings {
   std::uint64_t seed = 1;  ///< where in the noise it begins
 };
 
-/// The wind that scenes are measured in: a fixed GroundWind, the same everywhere but for its gusts, which are the
+/// The wind that scenes are measured in: a fixed ground::Wind, the same everywhere but for its gusts, which are the
 /// wind's own noise with von Karman's spectrum (gust_variances), carried by the mean wind, turning over as the
 /// daemon's. Waves whose octave lies below `shortest_wave_m` are left out, so that nothing in it is quicker than half
 /// its speed in Hz. Across the wind gusts have 0.8 of what they have along it (IEC 61400-1).
@@ -35,16 +35,16 @@ class TestWind {
   TestWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, const TestWindSettings& settings);
 
   /// The wind of the next tick.
-  const wind::ground::GroundWind& step(double dt_s) noexcept;
+  const wind::ground::Wind& step(double dt_s) noexcept;
 
   /// What blows at the origin, as a frame of the stream says it.
-  wind::WindVector at_origin() const noexcept { return wind_.at(*noise_, 0.0, 0.0); }
+  wind::Vector at_origin() const noexcept { return wind_.at(*noise_, 0.0, 0.0); }
 
  private:
   std::shared_ptr<const wind::turbulence::GustNoise> noise_;
-  wind::WindVector mean_;
+  wind::Vector mean_;
   double turnover_m23_s_;
-  wind::ground::GroundWind wind_;
+  wind::ground::Wind wind_;
   std::uint64_t tick_ = 0;
 };
 

@@ -4,7 +4,7 @@
 
 namespace yuragi::answer {
 
-void WindRecord::take(wind::WindVector wind) {
+void WindRecord::take(wind::Vector wind) {
   east_m_s_.push_back(static_cast<float>(wind.u_m_s));
   south_m_s_.push_back(static_cast<float>(-wind.v_m_s));
 }

@@ -9,7 +9,7 @@ namespace yuragi::answer {
 /// The wind of each frame of a record, and what it was like.
 class WindRecord {
  public:
-  void take(wind::WindVector wind);
+  void take(wind::Vector wind);
 
   const Series& east_m_s() const { return east_m_s_; }
   const Series& south_m_s() const { return south_m_s_; }

@@ -114,7 +114,7 @@ void record(std::vector<Asked>& all, const std::array<bool, kBeauforts>& is_aske
 /// The first minute of a scene's traces, a panel each, with a curve for each Beaufort number.
 void draw(const Asked& asked, const std::string& folder) {
   constexpr double kShown_s = 60.0;
-  std::vector<daemon::tools::plot::PlotPanel> panels;
+  std::vector<daemon::tools::plot::Panel> panels;
   for (std::size_t number = 0; number < kBeauforts; ++number) {
     for (std::size_t i = 0; i < asked.traces[number].size(); ++i) {
       const Trace& trace = asked.traces[number][i];
@@ -124,7 +124,7 @@ void draw(const Asked& asked, const std::string& folder) {
                           .y_label = trace.unit,
                           .curves = {}});
       }
-      daemon::tools::plot::PlotCurve curve{.title = fmt::format("Beaufort {}", kBeaufort[number]), .x = {}, .y = {}};
+      daemon::tools::plot::Curve curve{.title = fmt::format("Beaufort {}", kBeaufort[number]), .x = {}, .y = {}};
       for (std::size_t k = 0; k < trace.values.size() && static_cast<double>(k) < kShown_s * kRate_hz; ++k) {
         curve.x.push_back(static_cast<double>(k) / kRate_hz);
         curve.y.push_back(static_cast<double>(trace.values[k]));
@@ -243,7 +243,7 @@ int write_wind(const Options& options) {
   for (int tick = 0; tick < ticks; ++tick) {
     wind.step(kTick_s);
     if (tick % kTicksAReading != 0) continue;
-    const wind::WindVector now = wind.at_origin();
+    const wind::Vector now = wind.at_origin();
     file << fmt::format("{:.1f},{:.4f},{:.4f}\n", tick * kTick_s, now.u_m_s, now.v_m_s);
   }
   return file ? 0 : 1;

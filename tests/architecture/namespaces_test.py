@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds the namespaces of the sources against their rooms: drivers/modbus is yuragi::drivers::modbus. The engine's rooms
-leave `engine` out (engine/wind/blend is yuragi::wind::blend), and engine/base, which all share, is yuragi itself.
+leave `engine` out (engine/wind/blend is yuragi::wind::blend), and engine/base, which all share, is yuragi itself. A type
+does not begin with the name of its namespace: modbus::Request, not modbus::ModbusRequest.
 
 usage: namespaces_test.py PROJECT_ROOT
 """
@@ -12,6 +13,8 @@ import unittest
 import rooms
 
 OPENED = re.compile(r"^namespace (yuragi(?:::\w+)*) \{", re.MULTILINE)
+# A type at namespace scope that is defined here.
+TYPE = re.compile(r"^(?:class|struct|enum class|enum|using) (?:\[\[\w+\]\] )?(\w+)(?: final)?(?: :[^;{]*)?(?: ?\{| =)", re.MULTILINE)
 
 
 def namespace_of(room):
@@ -32,6 +35,18 @@ def faults_of(path, text):
     ]
 
 
+def repeats_of(path, text):
+    """The types of a source whose name begins with the name of its room, or with its singular."""
+    room = pathlib.PurePosixPath(path).parent.name.replace("_", "")
+    faults = []
+    for name in TYPE.findall(text):
+        words = re.findall(r"[A-Z][a-z]*\d*", name)
+        starts = ["".join(words[:count]).lower() for count in range(1, len(words))]
+        if room in starts or room.removesuffix("s") in starts:
+            faults.append(f"{path}: {name} repeats its namespace")
+    return faults
+
+
 class Namespaces(unittest.TestCase):
     def test_follow_rooms(self):
         faults = []
@@ -42,6 +57,12 @@ class Namespaces(unittest.TestCase):
             opened.update(OPENED.findall(text))
         self.assertEqual(faults, [], "\n" + "\n".join(faults))
         self.assertGreater(len(opened), 50)
+
+    def test_are_not_repeated_by_types(self):
+        faults = []
+        for path in rooms.sources(ROOT):
+            faults += repeats_of(path.as_posix(), (ROOT / path).read_text(encoding="utf-8"))
+        self.assertEqual(faults, [], "\n" + "\n".join(faults))
 
 
 class TheCheck(unittest.TestCase):
@@ -60,6 +81,20 @@ class TheCheck(unittest.TestCase):
         ("engine/base/a.hpp", "namespace yuragi::base {"),
         ("engine/wind/a.hpp", "namespace yuragi::engine::wind {"),
     ]
+
+    DISTINCT = ["class Sensor final : public sensor::Sensor {", "struct StationPlace {", "using Bytes = int;", "class Modbus {"]
+    REPEATED = ["class ModbusSensor final : public sensor::Sensor {", "struct ModbusPlace {", "using ModbusBytes = int;"]
+
+    def test_passes_types_that_do_not_repeat_their_namespace(self):
+        for text in self.DISTINCT:
+            with self.subTest(text=text):
+                self.assertEqual(repeats_of("drivers/modbus/a.hpp", text), [])
+
+    def test_refuses_types_that_repeat_it(self):
+        for text in self.REPEATED:
+            with self.subTest(text=text):
+                self.assertEqual(len(repeats_of("drivers/modbus/a.hpp", text)), 1)
+        self.assertEqual(len(repeats_of("engine/scenes/a.hpp", "struct SceneSetup {")), 1)
 
     def test_passes_the_namespace_of_the_room(self):
         for path, text in self.PASSED:

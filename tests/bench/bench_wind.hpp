@@ -16,7 +16,7 @@ inline constexpr double kBenchTick_s = 1.0 / 60.0;
 /// and nowhere else.
 class BenchWind {
  public:
-  static constexpr wind::WindVector kBreeze = {6.0, 3.0};
+  static constexpr wind::Vector kBreeze = {6.0, 3.0};
 
   /// With `gusts`: every octave that a tile holds has a strength, and is carried and turned as the daemon does it.
   /// `has_tape`: or nothing is measured, and the breeze is the same everywhere.
@@ -39,7 +39,7 @@ class BenchWind {
   BenchWind& operator=(const BenchWind&) = delete;
 
   /// The wind of the next tick.
-  const wind::ground::GroundWind& next() noexcept {
+  const wind::ground::Wind& next() noexcept {
     if (gusts_) gusts_->carry(wind_.gusts.carried, kBreeze.u_m_s, -kBreeze.v_m_s, kBenchTick_s, kTurnover_m23_s);
     if (wind_.tapes != nullptr) write();
     wind_.tick = ++tick_;
@@ -68,7 +68,7 @@ class BenchWind {
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   wind::ground::WindTapes tapes_{1};
   wind::ground::WindStroke stroke_;
-  wind::ground::GroundWind wind_ = kBreeze;
+  wind::ground::Wind wind_ = kBreeze;
   std::uint64_t tick_ = 0;
 };
 

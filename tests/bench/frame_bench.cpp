@@ -193,8 +193,8 @@ int main(int argc, char** argv) {
     app.add_option("--quality", options.quality, "of the look")
         ->check(CLI::IsMember(std::vector<std::string>{"auto", "low", "medium", "high"}))
         ->capture_default_str();
-    app.add_option("--step", options.step, "how much is drawn: 0 all, or one of PaceLadder::kParts (viewer/pace)")
-        ->check(CLI::Range(std::size_t{0}, pace::PaceLadder::kParts.size()))
+    app.add_option("--step", options.step, "how much is drawn: 0 all, or one of Ladder::kParts (viewer/pace)")
+        ->check(CLI::Range(std::size_t{0}, pace::Ladder::kParts.size()))
         ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
     const std::vector<Row> all = rows();
@@ -215,7 +215,7 @@ int main(int argc, char** argv) {
     stage.set_quality(quality);
     options.quality = name_of(quality);
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
-    const pace::DrawnPart part = options.step == 0 ? pace::DrawnPart{} : pace::PaceLadder::kParts[options.step - 1];
+    const pace::DrawnPart part = options.step == 0 ? pace::DrawnPart{} : pace::Ladder::kParts[options.step - 1];
     stage.set_blade_share(part.blades);
     stage.set_coarseness(part.coarseness);
     target.set_drawn_side(part.side);

@@ -16,8 +16,8 @@ constexpr double kDamping = 0.2;
 
 }  // namespace
 
-PlainStrands::PlainStrands(const pose::StrandSkeleton& skeleton, std::vector<float> flexibility,
-                           noise::NoiseTile2 first, noise::NoiseTile2 second, double period_m, double second_period_m)
+PlainStrands::PlainStrands(const pose::StrandSkeleton& skeleton, std::vector<float> flexibility, noise::Tile2 first,
+                           noise::Tile2 second, double period_m, double second_period_m)
     : skeleton_(&skeleton),
       flexibility_(std::move(flexibility)),
       first_(std::move(first)),
@@ -35,7 +35,7 @@ PlainStrands::PlainStrands(const pose::StrandSkeleton& skeleton, std::vector<flo
   }
 }
 
-float PlainStrands::noise_at(const noise::NoiseTile2& tile, float x_m, float z_m, double period_m,
+float PlainStrands::noise_at(const noise::Tile2& tile, float x_m, float z_m, double period_m,
                              const PlainOffset& offset) const {
   const auto size = static_cast<float>(tile.size);
   const auto cells_per_m = static_cast<float>(static_cast<double>(tile.size) / period_m);

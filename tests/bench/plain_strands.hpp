@@ -21,8 +21,8 @@ struct PlainOffset {
 class PlainStrands {
  public:
   /// Two tiles of period_m and second_period_m (the second not turned: the cost is the same), added.
-  PlainStrands(const pose::StrandSkeleton& skeleton, std::vector<float> flexibility, noise::NoiseTile2 first,
-               noise::NoiseTile2 second, double period_m, double second_period_m);
+  PlainStrands(const pose::StrandSkeleton& skeleton, std::vector<float> flexibility, noise::Tile2 first,
+               noise::Tile2 second, double period_m, double second_period_m);
 
   /// One frame: shift, sample, bend, sway (two axes), joints. `hybrid` 0 leaves the oscillators out.
   void frame(double east_m_s, double south_m_s, double dt_s, double hybrid);
@@ -32,7 +32,7 @@ class PlainStrands {
   std::span<const float> bend_east_rad() const { return bend_east_rad_; }
 
  private:
-  float noise_at(const noise::NoiseTile2& tile, float x_m, float z_m, double period_m, const PlainOffset& offset) const;
+  float noise_at(const noise::Tile2& tile, float x_m, float z_m, double period_m, const PlainOffset& offset) const;
   void joints_of(std::size_t strand);
 
   struct Oscillator {
@@ -42,7 +42,7 @@ class PlainStrands {
 
   const pose::StrandSkeleton* skeleton_;
   std::vector<float> flexibility_;
-  noise::NoiseTile2 first_, second_;
+  noise::Tile2 first_, second_;
   double period_m_, second_period_m_;
   PlainOffset offset_;
   std::vector<Oscillator> east_, south_;

@@ -36,8 +36,8 @@ using namespace yuragi::drivers;
 const Instant kStart{MonoTime(std::chrono::hours(1)), UtcTime(std::chrono::hours(490'000))};
 constexpr Nanoseconds kInterval = std::chrono::milliseconds(100);
 
-wind::WindReading reading_at(std::int64_t number) {
-  wind::WindReading reading;
+wind::Reading reading_at(std::int64_t number) {
+  wind::Reading reading;
   reading.time = {kStart.mono + number * kInterval, kStart.utc + number * kInterval};
   reading.speed_m_s = 3.0 + 0.001 * static_cast<double>(number % 1000);
   reading.direction_deg = 0.3 * static_cast<double>(number % 1000);
@@ -46,7 +46,7 @@ wind::WindReading reading_at(std::int64_t number) {
 
 void write_recording(const std::filesystem::path& file, std::int64_t count) {
   constexpr std::int64_t kReadingsPerCommit = 100'000;
-  auto writer = windlog::WindlogWriter::open(file).value();
+  auto writer = windlog::Writer::open(file).value();
   writer.begin_session({kStart, "yuragi-recording-bench", ""}).value();
   const std::int64_t often = writer.add_sensor("often", "simulated", "").value();
   const std::int64_t seldom = writer.add_sensor("seldom", "simulated", "").value();
@@ -65,7 +65,7 @@ double milliseconds_of(const std::function<void()>& work) {
 }
 
 void measure(const std::filesystem::path& file, std::int64_t count) {
-  const auto open = [&](const char* sensor) { return windlog::WindlogCursor::open(file, sensor).value(); };
+  const auto open = [&](const char* sensor) { return windlog::Cursor::open(file, sensor).value(); };
   const double often_ms = milliseconds_of([&] { open("often"); });
   const double seldom_ms = milliseconds_of([&] { open("seldom"); });
   auto cursor = open("often");
@@ -76,9 +76,9 @@ void measure(const std::filesystem::path& file, std::int64_t count) {
   const double moment_ms = milliseconds_of([&] { cursor.find(kStart.utc + kInterval * (count / 3)).value(); });
   const double play_ms = milliseconds_of([&] {
     const Instant now{MonoTime(std::chrono::hours(5)), kStart.utc + std::chrono::hours(24 * 400)};
-    auto player = windlog::WindlogPlayer::open(
-        file, {.playback = {.loop = true, .sensor = "seldom"}, .at_time_of_day = true}, now);
-    player->play(now, [](const wind::WindReading&) {}).value();
+    auto player =
+        windlog::Player::open(file, {.playback = {.loop = true, .sensor = "seldom"}, .at_time_of_day = true}, now);
+    player->play(now, [](const wind::Reading&) {}).value();
   });
   fmt::print("{:>12} {:>8.1f} {:>10.2f} {:>12.2f} {:>8.2f} {:>8.2f} {:>14.2f}\n", count,
              static_cast<double>(std::filesystem::file_size(file)) / static_cast<double>(count), often_ms, seldom_ms,

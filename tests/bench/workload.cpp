@@ -40,7 +40,7 @@ ParameterValues::Map parameters_in(const toml::table& table) {
 }  // namespace
 
 BenchScene bench_scene(std::string_view kind, const ParameterValues::Map& given) {
-  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
+  for (const scenes::Description* scene : scenes::scene_table()) {
     if (scene->name == kind) {
       return {.kind = scene, .values = ParameterValues::resolve(scene->parameters, given).value()};
     }
@@ -57,10 +57,10 @@ std::vector<BenchScene> scenes_of(const std::filesystem::path& config_file) {
     const auto number = [&scene](const char* key, double otherwise) { return scene[key].value_or(otherwise); };
     const auto kind = scene["kind"].value_or(std::string());
     const bool is_shown = scene["shown"].value_or(true);
-    const scenes::ScenePlacement placement{.x_m = number("x", 0.0),
-                                           .y_m = number("y", 0.0),
-                                           .z_m = number("z", 0.0),
-                                           .heading_deg = number("heading", 0.0)};
+    const scenes::Placement placement{.x_m = number("x", 0.0),
+                                      .y_m = number("y", 0.0),
+                                      .z_m = number("z", 0.0),
+                                      .heading_deg = number("heading", 0.0)};
     const double gain = number("gain", 1.0);
     for (const char* key : {"kind", "name", "x", "y", "z", "heading", "gain", "shown"}) scene.erase(key);
     if (!is_shown) continue;
@@ -89,7 +89,7 @@ Workload::Workload(const std::vector<BenchScene>& scenes, SimdRow row,
 }
 
 void Workload::shift() {
-  const wind::ground::GroundWind& wind = wind_.next();
+  const wind::ground::Wind& wind = wind_.next();
   for (Placed& part : parts_) part.scene->shift(part.gain * wind, kBenchTick_s);
 }
 
@@ -104,7 +104,7 @@ void Workload::project() {
   }
 }
 
-void Workload::frame(workers::WorkerPool& pool) {
+void Workload::frame(workers::Pool& pool) {
   shift();
   for (Placed& placed : parts_) {
     pool.run([&placed](Part part) { placed.scene->sample_part(part); });

@@ -15,10 +15,10 @@ namespace yuragi::bench {
 
 /// A scene of a workload.
 struct BenchScene {
-  const scenes::SceneDescription* kind = nullptr;
+  const scenes::Description* kind = nullptr;
   ParameterValues values;
   std::uint64_t seed = 1;
-  scenes::ScenePlacement placement = {};
+  scenes::Placement placement = {};
   double gain = 1.0;
 };
 
@@ -49,7 +49,7 @@ class Workload {
   }
 
   /// The same frame, shared out among the pool's threads.
-  void frame(workers::WorkerPool& pool);
+  void frame(workers::Pool& pool);
 
   // Store 12 bytes a node into the same joints, and compute nothing: in a plain loop, by memset, and past the caches.
   void store_in_a_loop();

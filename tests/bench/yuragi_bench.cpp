@@ -78,7 +78,7 @@ std::vector<Case> all_cases() {
   };
   for (Case& one : cases) one.is_paced = one.paper.has_value();
   // As the daemon ships them.
-  for (const scenes::SceneDescription* kind : scenes::scene_table()) {
+  for (const scenes::Description* kind : scenes::scene_table()) {
     const std::string name(kind->name);
     cases.push_back({.name = name + ", gusts", .scenes = {bench_scene(name)}, .has_gusts = true, .is_paced = true});
   }
@@ -306,7 +306,7 @@ int run(int argc, char** argv) {
   });
 
   // A second thread, on the largest meadow: back to back, and a frame at a time 60 times a second.
-  workers::WorkerPool pool(2);
+  workers::Pool pool(2);
   const std::vector<BenchScene> largest = {bench_scene("grass", meadow(400, 250))};
   Workload alone(largest, row);
   Workload shared(largest, row);

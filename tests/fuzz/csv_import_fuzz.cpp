@@ -11,10 +11,10 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace yuragi;
   if (size == 0) return 0;
-  daemon::tools::csv::CsvImportOptions options;
+  daemon::tools::csv::ImportOptions options;
   options.direction_is_toward = (data[0] & 1) != 0;
   options.components_are_from = (data[0] & 2) != 0;
-  options.direction_unit = static_cast<daemon::tools::csv::CsvDirectionUnit>((data[0] >> 2) & 3);
+  options.direction_unit = static_cast<daemon::tools::csv::DirectionUnit>((data[0] >> 2) & 3);
   options.comment = (data[0] & 16) != 0 ? '#' : '\0';
 
   // Half of the inputs have a header that is understood, so that the rows are reached.
@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::istringstream in(text);
   MonoTime last{};
   const auto report = daemon::tools::csv::import_csv(
-      in, "fuzz", options, {.reading = [&](std::string_view, const wind::WindReading& reading) {
+      in, "fuzz", options, {.reading = [&](std::string_view, const wind::Reading& reading) {
         if (!drivers::windlog::is_recordable(reading) || reading.time.mono < last) std::abort();
         last = reading.time.mono;
       }});

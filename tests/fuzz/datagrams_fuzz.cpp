@@ -36,7 +36,7 @@ class Listener {
     sender.send_to(datagram, udp::endpoint(boost::asio::ip::address_v4::loopback(), port_), 0, too_long);
     if (too_long) return;
     sensor_->poll(clock_, sink_);
-    for (const wind::WindReading& reading : sink_.readings) {
+    for (const wind::Reading& reading : sink_.readings) {
       if (!wind::is_plausible(reading)) std::abort();
     }
   }

@@ -97,7 +97,7 @@ void talk(const std::uint8_t* data, std::size_t size) {
     if (far_end.incoming.size() > 16) run(std::chrono::seconds(20));
   }
   run(std::chrono::seconds(30));
-  for (const wind::WindReading& reading : sink.readings) require(wind::is_plausible(reading));
+  for (const wind::Reading& reading : sink.readings) require(wind::is_plausible(reading));
 }
 
 }  // namespace

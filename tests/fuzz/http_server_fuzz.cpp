@@ -23,7 +23,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-daemon::web::WebSettings settings() {
+daemon::web::Settings settings() {
   return {.listen = "127.0.0.1:0",
           .hosts = {"roof"},
           .takes_token = true,
@@ -40,7 +40,7 @@ daemon::web::WebSettings settings() {
 /// Sends these bytes and no more, and returns what the server says until it closes the connection. Returns nothing
 /// where the client cannot connect: so many clients in a second can use up the machine's ports.
 std::optional<std::string> said_to(std::string_view bytes) {
-  static daemon::web::WebServer server(settings());
+  static daemon::web::Server server(settings());
   static const Address address = parse_address(server.local_endpoint()).value();
   boost::asio::io_context io;
   tcp::socket socket(io);

@@ -16,17 +16,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.start = UtcTime(std::chrono::seconds(1'687'730'400));
     options.interval = std::chrono::milliseconds(250);
   }
-  if ((data[0] & 2) != 0) options.time_format = daemon::tools::csv::CsvTimeFormat::kDayFirst;
+  if ((data[0] & 2) != 0) options.time_format = daemon::tools::csv::TimeFormat::kDayFirst;
 
   // Half of the inputs begin with a clock and a wind, so that those that follow are reached.
   std::string text = (data[0] & 4) != 0 ? "" : "$GPRMC,220000,A,,,,,,,250623,,\n$WIMWV,10,R,5.0,M,A\n";
   for (std::size_t i = 1; i < size; ++i) text += static_cast<char>(data[i]);
 
   std::istringstream in(text);
-  daemon::tools::csv::CsvInput input(in);
+  daemon::tools::csv::Input input(in);
   MonoTime last{};
   const auto report = daemon::tools::csv::import_line_log(
-      input, "fuzz", options, {.reading = [&](std::string_view, const wind::WindReading& reading) {
+      input, "fuzz", options, {.reading = [&](std::string_view, const wind::Reading& reading) {
         if (!drivers::windlog::is_recordable(reading) || reading.time.mono < last) std::abort();
         last = reading.time.mono;
       }});

@@ -76,7 +76,7 @@ void talk(decode::ByteSpan bytes) {
   };
   const MonoTime end = clock.now().mono + std::chrono::seconds(60);
   for (int i = 0; clock.now().mono < end && i < 10'000; ++i) clock.advance_to(sensor.poll(clock, sink));
-  for (const wind::WindReading& reading : sink.readings) require(wind::is_plausible(reading));
+  for (const wind::Reading& reading : sink.readings) require(wind::is_plausible(reading));
 }
 
 }  // namespace

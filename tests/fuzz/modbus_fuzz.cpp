@@ -23,19 +23,19 @@ void require(bool holds) {
 constexpr std::size_t kChoices = 8;
 
 void decode_reply(std::span<const std::uint8_t> input) {
-  const decode::modbus::ModbusRequest request = {.transaction = static_cast<std::uint16_t>((input[0] << 8U) | input[1]),
-                                                 .unit = input[2],
-                                                 .function = static_cast<std::uint8_t>(3U + (input[3] & 1U)),
-                                                 .address = 0,
-                                                 .count = input[4]};
-  decode::modbus::ModbusQuantity quantity;
+  const decode::modbus::Request request = {.transaction = static_cast<std::uint16_t>((input[0] << 8U) | input[1]),
+                                           .unit = input[2],
+                                           .function = static_cast<std::uint8_t>(3U + (input[3] & 1U)),
+                                           .address = 0,
+                                           .count = input[4]};
+  decode::modbus::Quantity quantity;
   quantity.type = static_cast<decode::modbus::RegisterType>(input[5] % 5);
   quantity.order = static_cast<decode::modbus::ByteOrder>(input[6] % 4);
   quantity.unit = static_cast<decode::modbus::QuantityUnit>(input[7] % 4);
   quantity.map = static_cast<decode::modbus::DirectionMap>((input[7] / 4) % 3);
   quantity.scale = (input[3] & 2U) != 0 ? 0.1 : 1.0;
 
-  for (const auto framing : {decode::modbus::ModbusFraming::kTcp, decode::modbus::ModbusFraming::kRtu}) {
+  for (const auto framing : {decode::modbus::Framing::kTcp, decode::modbus::Framing::kRtu}) {
     const auto registers = decode::modbus::decode_modbus(framing, request, input.subspan(kChoices));
     if (!registers) continue;
     require(registers->count == request.count);
@@ -50,15 +50,15 @@ void decode_reply(std::span<const std::uint8_t> input) {
 }
 
 /// Whatever a profile says, each of its quantities stands in the answer to the request that is to bring it.
-void check_plan(const modbus::ModbusProfile& profile) {
+void check_plan(const modbus::Profile& profile) {
   for (const bool is_direction_apart : {false, true}) {
     const auto reads = modbus::plan_modbus_reads(profile, is_direction_apart);
-    require(!reads.empty() && reads.front().contains(modbus::ModbusMeasure::kSpeed));
-    for (const modbus::ModbusRead& read : reads) {
+    require(!reads.empty() && reads.front().contains(modbus::Measure::kSpeed));
+    for (const modbus::RegisterRead& read : reads) {
       require(read.request.count >= 1 && read.request.count <= decode::modbus::kModbusMaxRegisters);
-      decode::modbus::ModbusRegisters registers;
+      decode::modbus::Registers registers;
       registers.count = read.request.count;
-      const auto require_in_reply = [&](const decode::modbus::ModbusQuantity& quantity) {
+      const auto require_in_reply = [&](const decode::modbus::Quantity& quantity) {
         require(quantity.address >= read.request.address);
         require(quantity.address + decode::modbus::register_count(quantity.type) <=
                 read.request.address + std::size_t{read.request.count});
@@ -66,7 +66,7 @@ void check_plan(const modbus::ModbusProfile& profile) {
                 decode::modbus::register_count(quantity.type));
       };
       require(read.has_wind() || !read.stations.empty());
-      for (const modbus::ModbusMeasure measure : read.measures) require_in_reply(modbus::quantity_of(profile, measure));
+      for (const modbus::Measure measure : read.measures) require_in_reply(modbus::quantity_of(profile, measure));
       for (const std::size_t station : read.stations) require_in_reply(profile.quantities.at(station).quantity);
     }
   }
@@ -74,7 +74,7 @@ void check_plan(const modbus::ModbusProfile& profile) {
 
 void read_profile(std::string_view text) {
   try {
-    const modbus::ModbusProfile profile = modbus::parse_modbus_profile(text, "fuzz.toml");
+    const modbus::Profile profile = modbus::parse_modbus_profile(text, "fuzz.toml");
     require(profile.speed.slave >= 1 && profile.speed.slave <= 247);
     require(profile.response_timeout > Nanoseconds::zero());
     check_plan(profile);

@@ -52,7 +52,7 @@ class Station {
       if (error && error != boost::asio::error::would_block) break;
       if (error) sensor_->poll(clock_, sink_);
     }
-    for (const wind::WindReading& reading : sink_.readings) require(wind::is_plausible(reading));
+    for (const wind::Reading& reading : sink_.readings) require(wind::is_plausible(reading));
     return answer;
   }
 

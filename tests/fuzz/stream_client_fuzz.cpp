@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static boost::asio::io_context io;
   static tcp::acceptor acceptor(io, tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0));
   static const std::string address = "127.0.0.1:" + std::to_string(acceptor.local_endpoint().port());
-  auto client = daemon::stream::StreamClient::connect(address, std::chrono::seconds(60));
+  auto client = daemon::stream::Client::connect(address, std::chrono::seconds(60));
   if (!client) return 0;  // so many clients in a second can use up the machine's ports
   tcp::socket server = acceptor.accept();
   static_cast<void>(client->subscribe({.sensors = true}));
@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (bool is_open = true; is_open;) {
     const auto message = client->receive(std::chrono::seconds(60));
     if (message) static_cast<void>(daemon::stream::refusal_in(*message, address));
-    if (!message && message.error() == daemon::stream::StreamEnd::kTimeout) std::abort();
+    if (!message && message.error() == daemon::stream::End::kTimeout) std::abort();
     is_open = message.has_value();
   }
   return 0;

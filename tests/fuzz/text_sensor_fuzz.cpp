@@ -56,6 +56,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   }
   text.run(std::chrono::minutes(1));
 
-  for (const wind::WindReading& reading : text.sink.readings) require_holds(wind::is_plausible(reading));
+  for (const wind::Reading& reading : text.sink.readings) require_holds(wind::is_plausible(reading));
   return 0;
 }

@@ -15,7 +15,7 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
-void obey(simulators::usb::UsbPort& port, const simulators::usb::UsbipMessage& message, double time_s) {
+void obey(simulators::usb::Port& port, const simulators::usb::UsbipMessage& message, double time_s) {
   port.advance(time_s, std::nullopt);
   if (const auto* submit = std::get_if<simulators::usb::UsbipSubmit>(&message)) {
     require(submit->length <= simulators::usb::kUsbipLongestTransfer && submit->endpoint < 16);
@@ -28,7 +28,7 @@ void obey(simulators::usb::UsbPort& port, const simulators::usb::UsbipMessage& m
   } else if (const auto* unlink = std::get_if<simulators::usb::UsbipUnlink>(&message)) {
     port.cancel(unlink->unlinked);
   }
-  for (const simulators::usb::UsbOutcome& outcome : port.take_outcomes()) {
+  for (const simulators::usb::Outcome& outcome : port.take_outcomes()) {
     require(simulators::usb::usbip_submit_reply(static_cast<std::uint32_t>(outcome.id), simulators::usb::kUsbipDone,
                                                 outcome.size, outcome.data)
                 .size() >= 48);
@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
   for (const simulators::usb::UsbipPhase phase :
        {simulators::usb::UsbipPhase::kRequests, simulators::usb::UsbipPhase::kTransfers}) {
-    const std::unique_ptr<simulators::usb::UsbPort> port = simulators::usb::echo_port();
+    const std::unique_ptr<simulators::usb::Port> port = simulators::usb::echo_port();
     std::span bytes(data, size);
     for (double time_s = 0.0;; time_s += 0.02) {
       const auto taken = simulators::usb::take_usbip_message(phase, bytes);

@@ -78,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (auto message = reader.next()) {
       if (*message) {
         shown.take(std::move(**message), now_s);
-      } else if (message->error() == wire::WireError::kTooLong) {
+      } else if (message->error() == wire::Error::kTooLong) {
         reader = wire::MessageReader(1 << 20);  // as a viewer that connects again
         break;
       }

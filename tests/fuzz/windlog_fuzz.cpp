@@ -31,13 +31,13 @@ const std::filesystem::path& scratch_file() {
 std::string make_recording() {
   std::filesystem::remove(scratch_file());
   {
-    auto writer = windlog::WindlogWriter::open(scratch_file());
+    auto writer = windlog::Writer::open(scratch_file());
     if (!writer) std::abort();
     for (int session = 0; session < 2; ++session) {
       if (!writer->begin_session({{}, "fuzz", ""})) std::abort();
       const auto sensor = writer->add_sensor("mast", "fuzz", "");
       for (int i = 0; i < 150; ++i) {
-        wind::WindReading reading;
+        wind::Reading reading;
         reading.time.mono += std::chrono::milliseconds(100 * i);
         reading.direction_deg = i;
         if (!writer->append(*sensor, reading)) std::abort();
@@ -56,17 +56,17 @@ std::string make_recording() {
 void play_anything(std::span<const std::uint8_t> orders) {
   Instant now{MonoTime(std::chrono::hours(1)), UtcTime(std::chrono::hours(500'000))};
   MonoTime last = now.mono;
-  const auto use = [&](const wind::WindReading& reading) {
+  const auto use = [&](const wind::Reading& reading) {
     if (!wind::is_plausible(reading) || reading.time.mono < last) std::abort();
     last = reading.time.mono;
   };
   const std::string place(orders.begin(), orders.begin() + static_cast<std::ptrdiff_t>(orders.size() % 12));
   static_cast<void>(windlog::parse_utc_offset(place));
-  auto opened = windlog::WindlogPlayer::open(
+  auto opened = windlog::Player::open(
       scratch_file(),
       {.playback = {.loop = orders.size() % 2 == 0, .sensor = "*"}, .at_time_of_day = orders.size() % 3 == 0}, now);
   if (!opened) return;
-  windlog::WindlogPlayer& player = *opened;
+  windlog::Player& player = *opened;
   for (const std::uint8_t order : orders.first(std::min<std::size_t>(orders.size(), 64))) {
     switch (order % 8) {
       case 0:
@@ -117,7 +117,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   play_anything(std::span(data, size));
   static_cast<void>(windlog::verify_recording(scratch_file(), std::chrono::seconds(1)));
 
-  auto reader = windlog::WindlogReader::open(scratch_file());
+  auto reader = windlog::Reader::open(scratch_file());
   if (!reader) return 0;
   const auto use_quantities = [&](const windlog::LoggedQuantities& logged) {
     if (!wind::plausible_part(logged.quantities) || logged.sensor >= reader->sensors().size()) std::abort();

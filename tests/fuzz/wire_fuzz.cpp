@@ -26,7 +26,7 @@ wire::Bytes damaged(wire::Bytes message, std::span<const std::uint8_t> damage) {
   return message;
 }
 
-void demand_place(const wind::WindState& wind) {
+void demand_place(const wind::State& wind) {
   if (!(std::abs(wind.upwind_m) <= 1e6) || !(wind.to_middle_s >= 0.0 && wind.to_middle_s <= 1e12)) std::abort();
 }
 

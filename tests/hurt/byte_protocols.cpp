@@ -64,14 +64,13 @@ class Bytes {
 
 // --- Modbus: a device with its speed in 0.01 m/s at register 0, its direction in degrees behind it
 
-constexpr modbus::ModbusRequest kModbusRequest = {
-    .transaction = 0x2A17, .unit = 1, .function = 3, .address = 0, .count = 2};
+constexpr modbus::Request kModbusRequest = {.transaction = 0x2A17, .unit = 1, .function = 3, .address = 0, .count = 2};
 
-Winds winds_of_registers(const Result<modbus::ModbusRegisters, modbus::ModbusRefusal>& registers) {
+Winds winds_of_registers(const Result<modbus::Registers, modbus::RefusedReply>& registers) {
   if (!registers) return {};
-  modbus::ModbusQuantity speed;
+  modbus::Quantity speed;
   speed.scale = 0.01;
-  modbus::ModbusQuantity direction;
+  modbus::Quantity direction;
   direction.unit = modbus::QuantityUnit::kDegrees;
   const auto speed_m_s = decode_speed_m_s(speed, registers->span().first(1));
   const auto direction_deg = decode_direction_deg(direction, registers->span().subspan(1, 1));

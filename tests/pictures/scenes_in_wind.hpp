@@ -49,7 +49,7 @@ class ScenesInWind {
   wind::blend::BlendedEstimator estimator_;
   static constexpr MonoTime kBegins{std::chrono::hours(1)};
   MonoTime now_ = kBegins;
-  wind::WindState state_;
+  wind::State state_;
 };
 
 }  // namespace yuragi::viewer

@@ -40,13 +40,13 @@ TEST(ShaderTest, EachCompiles) {
 }
 
 TEST(HeadlessContextTest, TakesTheFirstVersionThatTheDriverHas) {
-  constexpr std::array kVersions{GlVersion{9, 9}, GlVersion{3, 3}};
+  constexpr std::array kVersions{Version{9, 9}, Version{3, 3}};
   const HeadlessContext context({.is_software = true, .versions = kVersions});
   EXPECT_TRUE(is_enough(current_driver())) << current_driver().version;
 }
 
 TEST(HeadlessContextTest, NamesTheDriverWhereThereIsNoneOfThem) {
-  constexpr std::array kVersions{GlVersion{9, 9}};
+  constexpr std::array kVersions{Version{9, 9}};
   try {
     const HeadlessContext context({.is_software = true, .versions = kVersions});
     FAIL() << "a context of " << current_driver().version;

@@ -53,9 +53,9 @@ std::vector<std::size_t> Welch::starts(std::size_t samples) const {
   return result;
 }
 
-Welch::Segments Welch::segments(std::span<const wind::WindVector> samples) {
+Welch::Segments Welch::segments(std::span<const wind::Vector> samples) {
   Segments result;
-  for (const auto component : {&wind::WindVector::u_m_s, &wind::WindVector::v_m_s}) {
+  for (const auto component : {&wind::Vector::u_m_s, &wind::Vector::v_m_s}) {
     for (const std::size_t from : starts(samples.size())) {
       for (std::size_t i = 0; i < window_.size(); ++i) fft_.samples()[i] = samples[from + i].*component;
       result.push_back(transform());
@@ -107,15 +107,15 @@ double power_in(const std::vector<double>& density, double step_hz, Band band) {
   return power;
 }
 
-WindMoments moments_of(std::span<const wind::WindVector> samples) {
+WindMoments moments_of(std::span<const wind::Vector> samples) {
   WindMoments moments;
   const double part = 1.0 / static_cast<double>(samples.size());
-  for (const wind::WindVector& wind : samples) {
+  for (const wind::Vector& wind : samples) {
     moments.mean = moments.mean + part * wind;
     moments.mean_speed_m_s += part * speed_of(wind);
   }
-  for (const wind::WindVector& wind : samples) {
-    const wind::WindVector off = wind - moments.mean;
+  for (const wind::Vector& wind : samples) {
+    const wind::Vector off = wind - moments.mean;
     moments.variance_m2_s2 += part * (off.u_m_s * off.u_m_s + off.v_m_s * off.v_m_s);
   }
   return moments;

@@ -23,7 +23,7 @@ class Welch {
   Welch(double rate_hz, double segment_s, double top_hz);
 
   /// Of both components: first those of u, then those of v. At least a segment long.
-  Segments segments(std::span<const wind::WindVector> samples);
+  Segments segments(std::span<const wind::Vector> samples);
 
   /// How much each of so many samples counts in the density, 1 on average: those at both ends count little.
   std::vector<double> weights(std::size_t samples) const;
@@ -58,11 +58,11 @@ double power_in(const std::vector<double>& density, double step_hz, Band band);
 
 /// What a wind adds up to: means and variance.
 struct WindMoments {
-  wind::WindVector mean;
+  wind::Vector mean;
   double mean_speed_m_s = 0.0;
   double variance_m2_s2 = 0.0;  ///< of u and of v together
 };
-WindMoments moments_of(std::span<const wind::WindVector> samples);
+WindMoments moments_of(std::span<const wind::Vector> samples);
 
 inline double decibel(double ratio) noexcept {
   return 10.0 * std::log10(ratio);

@@ -118,8 +118,8 @@ class Carriage {
 
 /// The winds of one run, tick by tick.
 struct Run {
-  std::vector<wind::WindVector> signal, synthetic;
-  std::array<std::vector<wind::WindVector>, kBlades.size()> blades;
+  std::vector<wind::Vector> signal, synthetic;
+  std::array<std::vector<wind::Vector>, kBlades.size()> blades;
 };
 
 /// What one seed gives.
@@ -138,12 +138,12 @@ struct SeedResult {
 };
 
 /// `apart`: from a sample to the one that it is compared with; `step`: from one of those pairs to the next.
-Increments increments_of(std::span<const wind::WindVector> samples, std::size_t apart, std::size_t step) {
+Increments increments_of(std::span<const wind::Vector> samples, std::size_t apart, std::size_t step) {
   double second = 0.0;
   double fourth = 0.0;
   std::vector<double> differences;
   for (std::size_t i = apart; i < samples.size(); i += step) {
-    const wind::WindVector difference = samples[i] - samples[i - apart];
+    const wind::Vector difference = samples[i] - samples[i - apart];
     for (const double value : {difference.u_m_s, difference.v_m_s}) {
       differences.push_back(value);
       second += value * value;
@@ -182,10 +182,10 @@ class Comparer {
   double to_s() const { return static_cast<double>(last_tick_) / kTick_hz; }
 
   /// The readings, held: what is heard of the sensor at each tick that is compared.
-  std::vector<wind::WindVector> held() const {
-    std::vector<wind::WindVector> result;
+  std::vector<wind::Vector> held() const {
+    std::vector<wind::Vector> result;
     std::size_t next = 0;
-    wind::WindVector last{};
+    wind::Vector last{};
     for (std::size_t tick = 0; tick <= last_tick_; ++tick) {
       for (; next < readings_.size() && readings_[next].time.mono <= time_of(tick); ++next) {
         last = wind::wind_from(readings_[next].speed_m_s, *readings_[next].direction_deg);
@@ -199,7 +199,7 @@ class Comparer {
     SeedResult result;
     result.model_density.resize(sensor.front().size());
     const Run run = simulate(seed, welch, result.model_density);
-    const auto measure = [&welch](const std::vector<wind::WindVector>& winds) {
+    const auto measure = [&welch](const std::vector<wind::Vector>& winds) {
       return SeedResult::Place{moments_of(winds), Welch::density(welch.segments(winds))};
     };
     const Welch::Segments wind = welch.segments(run.signal);
@@ -238,8 +238,8 @@ class Comparer {
       for (; next < readings_.size() && readings_[next].time.mono <= time_of(tick); ++next) {
         estimator.accept(0, readings_[next]);
       }
-      const wind::WindVector wind = estimator.advance(time_of(tick)).wind;
-      const wind::ground::GroundWind ground = written_to(tapes, {{}, estimator.ground(), estimator.stroke()});
+      const wind::Vector wind = estimator.advance(time_of(tick)).wind;
+      const wind::ground::Wind ground = written_to(tapes, {{}, estimator.ground(), estimator.stroke()});
       const double speed_m_s = carriage.speed_m_s(ground.gusts.carried, 1.0 / kTick_hz);
       if (tick < first_tick_) continue;
       run.signal.push_back(wind);
@@ -256,7 +256,7 @@ class Comparer {
     return run;
   }
 
-  std::vector<wind::WindReading> readings_;
+  std::vector<wind::Reading> readings_;
   double gustiness_;
   std::size_t ticks_a_sample_;  ///< of the record
   std::size_t first_tick_, last_tick_;
@@ -313,7 +313,7 @@ BlendComparison compare_blend(const SonicRecord& record, double interval_s, doub
   const auto index = [&record](double time_s) {
     return static_cast<std::size_t>(std::lround(time_s * record.rate_hz));
   };
-  const std::span<const wind::WindVector> compared =
+  const std::span<const wind::Vector> compared =
       std::span(record.samples).subspan(index(result.from_s), index(result.to_s) - index(result.from_s));
   result.record = moments_of(compared);
   result.record_density = Welch::density(Welch(record.rate_hz, kSegment_s, kTopHz).segments(compared));

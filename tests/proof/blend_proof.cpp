@@ -173,9 +173,9 @@ void judge(const BlendComparison& blend, Verdict& verdict) {
 }
 
 /// A spectrum thinned to a few points a decade, each the mean of its bins.
-daemon::tools::plot::PlotCurve curve_of(const std::string& title, const std::vector<double>& density, double step_hz,
-                                        double from_hz) {
-  daemon::tools::plot::PlotCurve curve{.title = title, .x = {}, .y = {}};
+daemon::tools::plot::Curve curve_of(const std::string& title, const std::vector<double>& density, double step_hz,
+                                    double from_hz) {
+  daemon::tools::plot::Curve curve{.title = title, .x = {}, .y = {}};
   constexpr double kRatio = 1.12;
   double low_hz = from_hz;
   while (low_hz < kTopHz) {
@@ -190,18 +190,18 @@ daemon::tools::plot::PlotCurve curve_of(const std::string& title, const std::vec
   return curve;
 }
 
-daemon::tools::plot::PlotPanel panel_of(const SonicRecord& record, const BlendComparison& blend) {
+daemon::tools::plot::Panel panel_of(const SonicRecord& record, const BlendComparison& blend) {
   const double from_hz = 1.0 / 1080.0;
-  daemon::tools::plot::PlotPanel panel{.title = fmt::format("record {}, a sensor of {:g} s, mean of {} seeds",
-                                                            record.name, blend.interval_s, blend.seeds),
-                                       .x_label = "frequency, Hz",
-                                       .y_label = "S, m^2/s^2/Hz (u + v)",
-                                       .is_x_log = true,
-                                       .is_y_log = true,
-                                       .curves = {}};
+  daemon::tools::plot::Panel panel{.title = fmt::format("record {}, a sensor of {:g} s, mean of {} seeds", record.name,
+                                                        blend.interval_s, blend.seeds),
+                                   .x_label = "frequency, Hz",
+                                   .y_label = "S, m^2/s^2/Hz (u + v)",
+                                   .is_x_log = true,
+                                   .is_y_log = true,
+                                   .curves = {}};
   panel.curves.push_back(curve_of("record, 10 Hz", blend.record_density, blend.step_hz, from_hz));
   // What is held has no power at the multiples of its rate: its deepest notches would set the scale.
-  daemon::tools::plot::PlotCurve sensor = curve_of("readings alone", blend.sensor_density, blend.step_hz, from_hz);
+  daemon::tools::plot::Curve sensor = curve_of("readings alone", blend.sensor_density, blend.step_hz, from_hz);
   for (double& value : sensor.y) value = value < 1e-3 ? std::nan("") : value;
   panel.curves.push_back(std::move(sensor));
   panel.curves.push_back(curve_of("wind of yuragi", blend.signal.density, blend.step_hz, from_hz));
@@ -223,7 +223,7 @@ int prove(const Options& options) {
   const std::shared_ptr<const wind::turbulence::GustNoise> noise =
       daemon::sensing::make_gust_noise(daemon::settings::default_config());
   Verdict verdict;
-  std::vector<daemon::tools::plot::PlotPanel> panels;
+  std::vector<daemon::tools::plot::Panel> panels;
   for (const int number : options.records) {
     const std::optional<SonicRecord> record = load_sonic(number);
     if (!record) {

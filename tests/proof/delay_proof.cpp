@@ -17,8 +17,8 @@
 
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/scene_wind.hpp"
-#include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
+#include "engine/wind/blend/source_estimator.hpp"
 #include "engine/wind/ground/wind_tapes.hpp"
 #include "tests/proof/estimated_wind.hpp"
 
@@ -103,10 +103,10 @@ Complex carried(double frequency_hz, double interval_s, double way_m, const wind
   return wind::turbulence::OctaveFollower::Response(frequency_hz).weighted(weights);
 }
 
-/// From the wind to a blade's bend: SceneWind, and the part of it that is an oscillator. Both are stepped exactly, with
-/// the wind at the end of the tick: half a tick ahead of it.
+/// From the wind to a blade's bend: scenes::Wind, and the part of it that is an oscillator. Both are stepped exactly,
+/// with the wind at the end of the tick: half a tick ahead of it.
 Complex bent(double frequency_hz, double /*interval_s*/) {
-  const Complex scene = 1.0 / std::pow(Complex(1.0, turn_rad_s(frequency_hz) / scenes::SceneWind::kOmega_rad_s), 2.0);
+  const Complex scene = 1.0 / std::pow(Complex(1.0, turn_rad_s(frequency_hz) / scenes::Wind::kOmega_rad_s), 2.0);
   const double ratio = frequency_hz / kNatural_hz;
   const Complex oscillator = 1.0 / Complex(1.0 - ratio * ratio, 2.0 * kDampingRatio * ratio);
   const Complex early = ahead_by(0.5 * kDelayTick_s, frequency_hz);
@@ -169,7 +169,7 @@ class Passage {
     for (int tick = 0; tick < last; ++tick) {
       const double time_s = tick * kDelayTick_s;
       for (; told * interval_s_ <= time_s + 1e-9; ++told) {
-        wind::WindReading reading;
+        wind::Reading reading;
         reading.time.mono = MonoTime(from_seconds(told * interval_s_));
         reading.speed_m_s = block_mean_m_s(told * interval_s_);
         reading.direction_deg = 180.0;
@@ -177,8 +177,7 @@ class Passage {
       }
       estimator.advance(MonoTime(from_seconds(time_s)));
       // What is known of the wind goes to the scene; the noise, which is known too, is left out.
-      const wind::WindVector known =
-          estimator.ground().everywhere - shared_noise()->everywhere(estimator.ground().gusts);
+      const wind::Vector known = estimator.ground().everywhere - shared_noise()->everywhere(estimator.ground().gusts);
       grass->tick(known, kDelayTick_s);
       tapes.write(estimator.stroke());
       if (tick < settle) continue;
@@ -260,8 +259,8 @@ class Passage {
   }
 
   static std::unique_ptr<scenes::Scene> make_grass() {
-    const auto is_grass = [](const scenes::SceneDescription* kind) { return kind->name == std::string_view("grass"); };
-    const scenes::SceneDescription& kind = **std::ranges::find_if(scenes::scene_table(), is_grass);
+    const auto is_grass = [](const scenes::Description* kind) { return kind->name == std::string_view("grass"); };
+    const scenes::Description& kind = **std::ranges::find_if(scenes::scene_table(), is_grass);
     const ParameterValues::Map small = {{"blades_across", std::int64_t{8}},
                                         {"blades_deep", std::int64_t{8}},
                                         {"blade_length_variation", 0.0},

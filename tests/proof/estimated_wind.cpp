@@ -15,12 +15,12 @@ std::shared_ptr<const wind::turbulence::GustNoise> shared_noise() {
   return noise;
 }
 
-std::vector<wind::WindVector> wind_of(EstimatedWind& estimated, const std::vector<wind::WindReading>& readings,
-                                      double from_s, double to_s) {
-  std::vector<wind::WindVector> winds;
+std::vector<wind::Vector> wind_of(EstimatedWind& estimated, const std::vector<wind::Reading>& readings, double from_s,
+                                  double to_s) {
+  std::vector<wind::Vector> winds;
   const MonoTime from(from_seconds(from_s));
   auto next =
-      std::ranges::lower_bound(readings, from, {}, [](const wind::WindReading& reading) { return reading.time.mono; });
+      std::ranges::lower_bound(readings, from, {}, [](const wind::Reading& reading) { return reading.time.mono; });
   const auto ticks = static_cast<int>(std::lround((to_s - from_s) / kEstimateTick_s));
   for (int tick = 0; tick < ticks; ++tick) {
     const MonoTime now = from + from_seconds(tick * kEstimateTick_s);

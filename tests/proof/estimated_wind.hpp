@@ -19,12 +19,12 @@ class EstimatedWind {
  public:
   explicit EstimatedWind(std::uint64_t seed) : estimator_(1, {.climate = {.seed = seed}}, shared_noise()) {}
 
-  void take(const wind::WindReading& reading) {
+  void take(const wind::Reading& reading) {
     if (wind::is_plausible(reading) && judge_.judge(reading)) estimator_.accept(0, reading);
   }
 
   /// Goes on to `now`.
-  wind::WindVector advance(MonoTime now) { return estimator_.advance(now).wind; }
+  wind::Vector advance(MonoTime now) { return estimator_.advance(now).wind; }
 
   const wind::blend::BlendedEstimator& estimator() const { return estimator_; }
   const wind::judging::ReadingJudge& judge() const { return judge_; }
@@ -36,7 +36,7 @@ class EstimatedWind {
 
 /// The states of a run: from `from_s` on and before `to_s`, 60 a second, the readings told at their own times. Those
 /// before `from_s` are not told.
-std::vector<wind::WindVector> wind_of(EstimatedWind& estimated, const std::vector<wind::WindReading>& readings,
-                                      double from_s, double to_s);
+std::vector<wind::Vector> wind_of(EstimatedWind& estimated, const std::vector<wind::Reading>& readings, double from_s,
+                                  double to_s);
 
 }  // namespace yuragi::proof

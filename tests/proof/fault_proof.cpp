@@ -37,7 +37,7 @@ constexpr std::uint64_t kSeeds = 96;
 constexpr std::uint64_t kStepSeeds = 8;
 constexpr int kTicksASecond = 60;
 
-using Readings = std::vector<wind::WindReading>;
+using Readings = std::vector<wind::Reading>;
 
 /// Both recordings as a sensor of 1 s would have told them.
 class WindFaults : public testing::TestWithParam<int> {
@@ -45,15 +45,15 @@ class WindFaults : public testing::TestWithParam<int> {
   void SetUp() override { readings_ = block_means(sonic_or_synthetic(GetParam()), 1.0); }
 
   static MonoTime at(double time_s) { return MonoTime(from_seconds(time_s)); }
-  static bool is_faulty(const wind::WindReading& reading) {
+  static bool is_faulty(const wind::Reading& reading) {
     return reading.time.mono >= at(kFaultFrom_s) && reading.time.mono < at(kFaultTo_s);
   }
 
   /// The readings, those of the fault changed; `number` counts them.
-  Readings with_fault(const std::function<void(wind::WindReading&, int number)>& change) const {
+  Readings with_fault(const std::function<void(wind::Reading&, int number)>& change) const {
     Readings result = readings_;
     int number = 0;
-    for (wind::WindReading& reading : result) {
+    for (wind::Reading& reading : result) {
       if (is_faulty(reading)) change(reading, number++);
     }
     return result;
@@ -62,16 +62,16 @@ class WindFaults : public testing::TestWithParam<int> {
   Readings readings_;
 };
 
-/// The largest step from one tick to the next that a scene feels of such a wind (SceneWind, which smooths it over 0.1
-/// s): what is seen of it.
-double largest_felt_step_m_s(const std::vector<wind::WindVector>& winds) {
+/// The largest step from one tick to the next that a scene feels of such a wind (scenes::Wind, which smooths it over
+/// 0.1 s): what is seen of it.
+double largest_felt_step_m_s(const std::vector<wind::Vector>& winds) {
   constexpr double kTick_s = 1.0 / kTicksASecond;
-  scenes::SceneWind felt({});
-  const auto value = [&felt] { return wind::WindVector{felt.east_m_s(), -felt.south_m_s()}; };
+  scenes::Wind felt({});
+  const auto value = [&felt] { return wind::Vector{felt.east_m_s(), -felt.south_m_s()}; };
   for (int tick = 0; tick < 2 * kTicksASecond; ++tick) felt.step(winds.front(), kTick_s);
   double largest = 0.0;
-  for (const wind::WindVector& wind : winds) {
-    const wind::WindVector before = value();
+  for (const wind::Vector& wind : winds) {
+    const wind::Vector before = value();
     felt.step(wind, kTick_s);
     largest = std::max(largest, speed_of(value() - before));
   }
@@ -90,11 +90,11 @@ struct Steps {
 
 /// A run in which the clock that only grows leaps ten years on, and the sensor with it; and then back again, where time
 /// that is over is not lived again.
-std::vector<wind::WindVector> leaping_wind(EstimatedWind estimated, Readings readings) {
+std::vector<wind::Vector> leaping_wind(EstimatedWind estimated, Readings readings) {
   constexpr Nanoseconds kLeap = std::chrono::years(10);
-  for (wind::WindReading& reading : readings) reading.time.mono += kLeap;
+  for (wind::Reading& reading : readings) reading.time.mono += kLeap;
   const double leap_s = seconds(kLeap);
-  std::vector<wind::WindVector> winds = wind_of(estimated, readings, leap_s + kFaultFrom_s, leap_s + kEnd_s);
+  std::vector<wind::Vector> winds = wind_of(estimated, readings, leap_s + kFaultFrom_s, leap_s + kEnd_s);
   winds.push_back(estimated.advance(MonoTime(from_seconds(kEnd_s))));
   return winds;
 }
@@ -103,19 +103,19 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
   std::map<std::string, Readings> faults;
   faults["gap of 100 s"] = readings_;
   std::erase_if(faults["gap of 100 s"], is_faulty);
-  faults["NaN and infinity"] = with_fault([](wind::WindReading& reading, int number) {
+  faults["NaN and infinity"] = with_fault([](wind::Reading& reading, int number) {
     if (number % 5 == 4) return;  // one of five is well
     const std::array<double, 3> wrong = {std::nan(""), std::numeric_limits<double>::infinity(),
                                          -std::numeric_limits<double>::infinity()};
     (number % 2 == 0 ? reading.speed_m_s : *reading.direction_deg) = wrong.at(static_cast<std::size_t>(number) % 3);
   });
-  faults["spikes"] = with_fault([](wind::WindReading& reading, int number) {
+  faults["spikes"] = with_fault([](wind::Reading& reading, int number) {
     if (number % 7 == 0) reading.speed_m_s = 60.0 + number / 2.0;
     if (number % 11 == 5) *reading.direction_deg = std::fmod(*reading.direction_deg + 180.0, 360.0);
     if (number % 11 == 5) reading.speed_m_s *= 3.0;
   });
   const auto last = std::ranges::find_if(readings_, is_faulty) - 1;
-  faults["frozen value"] = with_fault([&](wind::WindReading& reading, int) {
+  faults["frozen value"] = with_fault([&](wind::Reading& reading, int) {
     reading.speed_m_s = last->speed_m_s;
     reading.direction_deg = last->direction_deg;
   });
@@ -127,14 +127,14 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
   for (std::uint64_t seed = 1; seed <= kStepSeeds; ++seed) {
     EstimatedWind usual(seed);
     wind_of(usual, readings_, 0.0, kSettled_s);
-    std::vector<wind::WindVector> winds = wind_of(usual, readings_, kSettled_s, kFaultFrom_s);
+    std::vector<wind::Vector> winds = wind_of(usual, readings_, kSettled_s, kFaultFrom_s);
     for (const auto& [name, readings] : faults) {
       EstimatedWind estimated = usual;
-      std::vector<wind::WindVector> after = {winds.back()};
+      std::vector<wind::Vector> after = {winds.back()};
       std::ranges::copy(wind_of(estimated, readings, kFaultFrom_s, kEnd_s), std::back_inserter(after));
       faulty[name].add(largest_felt_step_m_s(after));
     }
-    std::vector<wind::WindVector> leaping = {winds.back()};
+    std::vector<wind::Vector> leaping = {winds.back()};
     std::ranges::copy(leaping_wind(usual, readings_), std::back_inserter(leaping));
     faulty["clock leaps 10 years"].add(largest_felt_step_m_s(leaping));
     std::ranges::copy(wind_of(usual, readings_, kFaultFrom_s, kEndOfRecord_s), std::back_inserter(winds));
@@ -157,11 +157,11 @@ TEST_P(WindFaults, NoneMovesItMoreThanItMovesAnyway) {
 TEST_P(WindFaults, AClockThatIsSetDoesNotMoveIt) {
   for (const int years : {-10, 10}) {
     const Readings set =
-        with_fault([years](wind::WindReading& reading, int) { reading.time.utc += std::chrono::years(years); });
+        with_fault([years](wind::Reading& reading, int) { reading.time.utc += std::chrono::years(years); });
     EstimatedWind usual(1);
     EstimatedWind estimated(1);
-    const std::vector<wind::WindVector> expected = wind_of(usual, readings_, 0.0, kEnd_s);
-    const std::vector<wind::WindVector> winds = wind_of(estimated, set, 0.0, kEnd_s);
+    const std::vector<wind::Vector> expected = wind_of(usual, readings_, 0.0, kEnd_s);
+    const std::vector<wind::Vector> winds = wind_of(estimated, set, 0.0, kEnd_s);
     ASSERT_EQ(winds.size(), expected.size());
     for (std::size_t i = 0; i < winds.size(); ++i) {
       ASSERT_EQ(winds[i].u_m_s, expected[i].u_m_s);
@@ -196,15 +196,15 @@ TEST_P(WindFaults, InAGapItGoesOnAsTheModelDoes) {
   double usual_m2_s2 = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     EstimatedWind estimated(seed);
-    const std::vector<wind::WindVector> before = wind_of(estimated, gap, 0.0, kFaultFrom_s);
+    const std::vector<wind::Vector> before = wind_of(estimated, gap, 0.0, kFaultFrom_s);
     // The last 100 s before the gap, and the gap.
-    const std::vector<wind::WindVector> last(before.end() - 100L * kTicksASecond, before.end());
+    const std::vector<wind::Vector> last(before.end() - 100L * kTicksASecond, before.end());
     const wind::turbulence::Turbulence turbulence = estimated.estimator().turbulence();
-    const wind::WindVector ahead = estimated.estimator().ground().gusts.ahead;
+    const wind::Vector ahead = estimated.estimator().ground().gusts.ahead;
     const WindMoments usual = moments_of(last);
-    std::vector<wind::WindVector> winds = wind_of(estimated, gap, kFaultFrom_s, kFaultTo_s);
+    std::vector<wind::Vector> winds = wind_of(estimated, gap, kFaultFrom_s, kFaultTo_s);
     const WindMoments both = moments_of(winds);
-    for (wind::WindVector& wind : winds) wind = {wind.u_m_s * ahead.u_m_s + wind.v_m_s * ahead.v_m_s, 0.0};
+    for (wind::Vector& wind : winds) wind = {wind.u_m_s * ahead.u_m_s + wind.v_m_s * ahead.v_m_s, 0.0};
     const double sigma_m_s = turbulence.intensity * speed_of(usual.mean);
     model_m2_s2 += sigma_m_s * sigma_m_s * seen_in(kFaultTo_s - kFaultFrom_s, turbulence) / kSeeds;
     along_m2_s2 += moments_of(winds).variance_m2_s2 / kSeeds;

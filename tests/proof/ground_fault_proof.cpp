@@ -47,11 +47,11 @@ struct Motion {
 /// The wind as a scene in one place feels it.
 class FeltWind {
  public:
-  FeltWind(const scenes::ScenePlacement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts)
+  FeltWind(const scenes::Placement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts)
       : wind_(placement, std::move(gusts)) {}
 
-  void step(const wind::ground::GroundWind& ground) {
-    const wind::WindVector before = value();
+  void step(const wind::ground::Wind& ground) {
+    const wind::Vector before = value();
     wind_.step(ground, kGroundTick_s);
     motion_.add({speed_of(value() - before), wind_.speed_m_s()});
   }
@@ -59,9 +59,9 @@ class FeltWind {
   const Motion& motion() const { return motion_; }
 
  private:
-  wind::WindVector value() const { return {wind_.east_m_s(), -wind_.south_m_s()}; }
+  wind::Vector value() const { return {wind_.east_m_s(), -wind_.south_m_s()}; }
 
-  scenes::SceneWind wind_;
+  scenes::Wind wind_;
   Motion motion_;
 };
 
@@ -73,20 +73,19 @@ class Ground {
       : estimator_(1, {.climate = {.seed = seed}, .reach_m = size_m / std::numbers::sqrt2}, shared_noise()),
         at_sensor_({}, nullptr) {
     for (const auto& [east, south] : std::array<std::pair<int, int>, 5>{{{0, 0}, {-1, -1}, {-1, 1}, {1, -1}, {1, 1}}}) {
-      places_.emplace_back(scenes::ScenePlacement{.x_m = east * size_m / 2, .z_m = south * size_m / 2}, shared_noise());
+      places_.emplace_back(scenes::Placement{.x_m = east * size_m / 2, .z_m = south * size_m / 2}, shared_noise());
     }
   }
 
-  void estimate(const std::vector<wind::WindReading>& readings, double from_s, double to_s) {
+  void estimate(const std::vector<wind::Reading>& readings, double from_s, double to_s) {
     const MonoTime from(from_seconds(from_s));
-    auto next =
-        std::ranges::lower_bound(readings, from, {}, [](const wind::WindReading& said) { return said.time.mono; });
+    auto next = std::ranges::lower_bound(readings, from, {}, [](const wind::Reading& said) { return said.time.mono; });
     const auto ticks = std::lround((to_s - from_s) / kGroundTick_s);
     for (long tick = 0; tick < ticks; ++tick) {
       const MonoTime now = from + from_seconds(static_cast<double>(tick) * kGroundTick_s);
       for (; next != readings.end() && next->time.mono <= now; ++next) estimator_.accept(0, *next);
-      const wind::WindState state = estimator_.advance(now);
-      const wind::ground::GroundWind ground = over_the_ground();
+      const wind::State state = estimator_.advance(now);
+      const wind::ground::Wind ground = over_the_ground();
       for (FeltWind& place : places_) place.step(ground);
       at_sensor_.step(state.wind);
     }
@@ -105,9 +104,7 @@ class Ground {
 
  private:
   /// The wind of this tick, to be read at places.
-  wind::ground::GroundWind over_the_ground() {
-    return written_to(tapes_, {{}, estimator_.ground(), estimator_.stroke()});
-  }
+  wind::ground::Wind over_the_ground() { return written_to(tapes_, {{}, estimator_.ground(), estimator_.stroke()}); }
 
   wind::blend::BlendedEstimator estimator_;
   wind::ground::WindTapes tapes_;
@@ -122,11 +119,11 @@ SonicRecord changed(SonicRecord record, const WindChange& change) {
   for (std::size_t i = 0; i < record.samples.size(); ++i) {
     const double since_s = static_cast<double>(i) / record.rate_hz - kChange_s;
     if (since_s < 0.0) continue;
-    wind::WindVector& wind = record.samples[i];
+    wind::Vector& wind = record.samples[i];
     const auto [turn_rad, factor] = change(since_s, speed_of(wind));
     const double sine = std::sin(turn_rad);
     const double cosine = std::cos(turn_rad);
-    wind = factor * wind::WindVector{cosine * wind.u_m_s - sine * wind.v_m_s, sine * wind.u_m_s + cosine * wind.v_m_s};
+    wind = factor * wind::Vector{cosine * wind.u_m_s - sine * wind.v_m_s, sine * wind.u_m_s + cosine * wind.v_m_s};
   }
   return record;
 }
@@ -149,7 +146,7 @@ std::pair<double, double> calm_between(double since_s, double speed_m_s) {
 
 struct GroundCase {
   std::string name;
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   bool is_stronger_wind = false;  ///< more than the record has was told
 };
 
@@ -161,11 +158,11 @@ std::vector<GroundCase> cases_of(const SonicRecord& record, double interval_s) {
       {"silence of 100 s", block_means(record, interval_s)},
       {"one reading of 40 m/s", block_means(record, interval_s), true},
   };
-  const auto time_of = [](const wind::WindReading& said) { return said.time.mono; };
+  const auto time_of = [](const wind::Reading& said) { return said.time.mono; };
   const MonoTime silence(from_seconds(kChange_s));
   const MonoTime end(from_seconds(kSilenceEnd_s));
   std::erase_if(cases[3].readings,
-                [&](const wind::WindReading& said) { return time_of(said) >= silence && time_of(said) < end; });
+                [&](const wind::Reading& said) { return time_of(said) >= silence && time_of(said) < end; });
   std::ranges::lower_bound(cases[4].readings, silence, {}, time_of)->speed_m_s = 40.0;
   return cases;
 }
@@ -176,7 +173,7 @@ class GroundFaults : public testing::TestWithParam<std::tuple<int, double, doubl
 TEST_P(GroundFaults, NoPlaceMovesMuchMoreThanItMovesAnyway) {
   const auto [number, interval_s, size_m] = GetParam();
   const SonicRecord record = sonic_or_synthetic(number);
-  const std::vector<wind::WindReading> readings = block_means(record, interval_s);
+  const std::vector<wind::Reading> readings = block_means(record, interval_s);
   const std::vector<GroundCase> cases = cases_of(record, interval_s);
 
   Motion usual;

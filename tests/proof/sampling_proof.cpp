@@ -43,13 +43,13 @@ struct Made {
 
 /// Returns the blended wind, at the record's rate, of a station that reports `value` every `interval_s` and is
 /// configured as `taken`.
-std::vector<wind::WindVector> wind_of_station(const SonicRecord& record, ReadingValue value, ReadingValue taken,
-                                              double interval_s, std::uint64_t seed) {
+std::vector<wind::Vector> wind_of_station(const SonicRecord& record, ReadingValue value, ReadingValue taken,
+                                          double interval_s, std::uint64_t seed) {
   const auto readings =
       value == ReadingValue::kInstant ? instant_samples(record, interval_s) : block_means(record, interval_s);
   wind::blend::BlendedEstimator estimator(
       1, {.climate = {.seed = 100 + seed}, .rate_hz = record.rate_hz, .sources = {{.value = taken}}}, shared_noise());
-  std::vector<wind::WindVector> wind;
+  std::vector<wind::Vector> wind;
   std::size_t next = 0;
   for (std::size_t tick = 0; tick < record.samples.size(); ++tick) {
     const MonoTime now(from_seconds(static_cast<double>(tick) / record.rate_hz));
@@ -70,7 +70,7 @@ Made make(const std::vector<SonicRecord>& records, ReadingValue value, ReadingVa
   std::string ratios;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const SonicRecord& record = records[i];
-    const std::vector<wind::WindVector> wind = wind_of_station(record, value, taken, interval_s, i + 1);
+    const std::vector<wind::Vector> wind = wind_of_station(record, value, taken, interval_s, i + 1);
     const auto settled = static_cast<std::size_t>(kSettledAfter_s * record.rate_hz);
     const auto shown = std::span(wind).subspan(settled);
     const auto real = std::span(record.samples).subspan(settled);
@@ -161,13 +161,13 @@ TEST(Sampling, AssumedIsTheSmallerMistake) {
 ReadingValue judged(const SonicRecord& record, ReadingValue value, double interval_s) {
   const auto readings =
       value == ReadingValue::kInstant ? instant_samples(record, interval_s) : block_means(record, interval_s);
-  wind::WindVector mean;
-  for (const wind::WindVector& sample : record.samples) mean = mean + sample;
+  wind::Vector mean;
+  for (const wind::Vector& sample : record.samples) mean = mean + sample;
   mean = 1.0 / static_cast<double>(record.samples.size()) * mean;
   const double speed_m_s = wind::speed_of(mean);
   wind::turbulence::WindTurbulence turbulence({}, 600.0, ReadingValue::kUnknown);
   for (int turn = 0; turn < 2; ++turn) {
-    for (const wind::WindReading& reading : readings) {
+    for (const wind::Reading& reading : readings) {
       turbulence.forget(interval_s);
       turbulence.take(wind::wind_from(reading.speed_m_s, *reading.direction_deg), 1.0 / speed_m_s * mean, speed_m_s,
                       true);

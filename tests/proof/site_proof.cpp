@@ -38,8 +38,8 @@ constexpr double kSiteFrom_hz = 0.0375;
 constexpr double kSiteTo_hz = 0.6;
 constexpr double kSiteSegment_s = 300.0;
 
-wind::blend::BlendSettings blend_of(double length_m, std::uint64_t seed,
-                                    std::shared_ptr<wind::turbulence::SiteSpectrum> site, bool fits) {
+wind::blend::Settings blend_of(double length_m, std::uint64_t seed,
+                               std::shared_ptr<wind::turbulence::SiteSpectrum> site, bool fits) {
   return {.climate = {.turbulence_intensity = kUsualIntensity, .seed = seed},
           .rate_hz = kSiteTick_hz,
           .site = std::move(site),
@@ -51,7 +51,7 @@ std::shared_ptr<wind::turbulence::SiteSpectrum> fitted_by(const SonicRecord& rec
                                                           double length_m) {
   auto site = std::make_shared<wind::turbulence::SiteSpectrum>();
   wind::blend::BlendedEstimator estimator(1, blend_of(length_m, 1, site, true), shared_noise());
-  for (const wind::WindReading& reading : block_means(record, interval_s)) {
+  for (const wind::Reading& reading : block_means(record, interval_s)) {
     estimator.accept(0, reading);
     estimator.advance(reading.time.mono);
   }
@@ -79,13 +79,13 @@ struct Filled {
 };
 
 Filled fill(const SonicRecord& record, double length_m, const std::shared_ptr<wind::turbulence::SiteSpectrum>& site) {
-  const std::vector<wind::WindReading> readings = block_means(record, kSlowInterval_s);
+  const std::vector<wind::Reading> readings = block_means(record, kSlowInterval_s);
   const double from_s = 3.0 * kSlowInterval_s;
   const double to_s = seconds(readings.back().time.mono.time_since_epoch());
   const auto sample_at = [&](double time_s) {
     return record.samples.begin() + static_cast<std::ptrdiff_t>(time_s * record.rate_hz);
   };
-  const std::vector<wind::WindVector> real(sample_at(from_s), sample_at(to_s));
+  const std::vector<wind::Vector> real(sample_at(from_s), sample_at(to_s));
   Welch of_record(record.rate_hz, kSiteSegment_s, 5.0);
   const std::vector<double> real_density = Welch::density(of_record.segments(real));
   Welch of_wind(kSiteTick_hz, kSiteSegment_s, 5.0);
@@ -93,13 +93,13 @@ Filled fill(const SonicRecord& record, double length_m, const std::shared_ptr<wi
   Filled result;
   for (std::uint64_t seed = 1; seed <= kSiteSeeds; ++seed) {
     wind::blend::BlendedEstimator estimator(1, blend_of(length_m, seed, site, false), shared_noise());
-    std::vector<wind::WindVector> winds;
+    std::vector<wind::Vector> winds;
     auto next = readings.begin();
     for (int tick = 0; tick <= static_cast<int>(to_s * kSiteTick_hz); ++tick) {
       const double time_s = tick / kSiteTick_hz;
       const MonoTime now(from_seconds(time_s));
       for (; next != readings.end() && next->time.mono <= now; ++next) estimator.accept(0, *next);
-      const wind::WindVector wind = estimator.advance(now).wind;
+      const wind::Vector wind = estimator.advance(now).wind;
       if (time_s >= from_s) winds.push_back(wind);
     }
     const std::vector<double> of_seed = Welch::density(of_wind.segments(winds));
@@ -171,8 +171,8 @@ SonicRecord made_up_wind(double speed_m_s, double sigma_m_s, double length_m, st
   constexpr double kStep = 1.0 / 32.0;
   for (double place = std::log2(1.0 / 1800.0); place < std::log2(5.0); place += kStep) {
     const double low_hz = std::exp2(place);
-    for (const auto component : {&wind::WindVector::v_m_s, &wind::WindVector::u_m_s}) {
-      const bool is_along = component == &wind::WindVector::v_m_s;
+    for (const auto component : {&wind::Vector::v_m_s, &wind::Vector::u_m_s}) {
+      const bool is_along = component == &wind::Vector::v_m_s;
       const auto spectrum = wind::turbulence::WindSpectrum::make(
           {.component = is_along ? wind::turbulence::WindComponent::kAlong : wind::turbulence::WindComponent::kAcross,
            .speed_m_s = speed_m_s,

@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::array<const char*, 2> kNames = {"20180720T133000", "20180720T140000"};
 
-wind::WindReading reading_of(wind::WindVector wind, double time_s) {
-  wind::WindReading reading;
+wind::Reading reading_of(wind::Vector wind, double time_s) {
+  wind::Reading reading;
   reading.time.mono = MonoTime(from_seconds(time_s));
   reading.speed_m_s = speed_of(wind);
   reading.direction_deg = wind::direction_from_deg(wind);
@@ -56,7 +56,7 @@ std::optional<SonicRecord> load_sonic(int number) {
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with('#') || line.starts_with("timestamp")) continue;
     const std::size_t comma = line.find(',');
-    wind::WindVector wind;
+    wind::Vector wind;
     if (comma == std::string::npos || std::sscanf(line.c_str() + comma, ",%lf,%lf", &wind.u_m_s, &wind.v_m_s) != 2) {
       throw std::runtime_error(std::string(file).append(": a line is not time,u,v: ").append(line));
     }
@@ -81,15 +81,15 @@ SonicRecord sonic_or_synthetic(int number) {
       gusts);
   SonicRecord record{.name = "synthetic", .samples = {}};
   for (int i = 0; i < kTicksASample * kSamples; ++i) {
-    const wind::WindVector wind = climate.advance(MonoTime(from_seconds(i / (kTicksASample * record.rate_hz)))).wind;
+    const wind::Vector wind = climate.advance(MonoTime(from_seconds(i / (kTicksASample * record.rate_hz)))).wind;
     if (i % kTicksASample == 0) record.samples.push_back(wind);
   }
   return record;
 }
 
-std::vector<wind::WindReading> instant_samples(const SonicRecord& record, double interval_s) {
+std::vector<wind::Reading> instant_samples(const SonicRecord& record, double interval_s) {
   const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   for (std::size_t end = per_block; end <= record.samples.size(); end += per_block) {
     readings.push_back(reading_of(record.samples[end - 1], static_cast<double>(end) / record.rate_hz));
   }
@@ -98,7 +98,7 @@ std::vector<wind::WindReading> instant_samples(const SonicRecord& record, double
 
 SonicRecord von_karman_record(double speed_m_s, double intensity, double length_m, std::uint64_t seed) {
   constexpr std::size_t kSize = std::size_t{1} << 15;
-  SonicRecord record{.name = "von Karman", .samples = std::vector<wind::WindVector>(kSize)};
+  SonicRecord record{.name = "von Karman", .samples = std::vector<wind::Vector>(kSize)};
   const auto component = [&](wind::turbulence::WindComponent which, double sigma_m_s) {
     const auto spectrum =
         wind::turbulence::WindSpectrum::make(
@@ -112,13 +112,13 @@ SonicRecord von_karman_record(double speed_m_s, double intensity, double length_
   return record;
 }
 
-std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s) {
+std::vector<wind::Reading> block_means(const SonicRecord& record, double interval_s) {
   const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   for (std::size_t end = per_block; end <= record.samples.size(); end += per_block) {
-    wind::WindVector sum{};
+    wind::Vector sum{};
     for (std::size_t i = end - per_block; i < end; ++i) sum = sum + record.samples[i];
-    const wind::WindVector mean = (1.0 / static_cast<double>(per_block)) * sum;
+    const wind::Vector mean = (1.0 / static_cast<double>(per_block)) * sum;
     readings.push_back(reading_of(mean, static_cast<double>(end) / record.rate_hz));
   }
   return readings;

@@ -14,7 +14,7 @@ namespace yuragi::proof {
 struct SonicRecord {
   std::string name;
   double rate_hz = 10.0;
-  std::vector<wind::WindVector> samples;  ///< as the file has them: u, v
+  std::vector<wind::Vector> samples;  ///< as the file has them: u, v
 
   double duration_s() const { return static_cast<double>(samples.size()) / rate_hz; }
 };
@@ -31,10 +31,10 @@ SonicRecord sonic_or_synthetic(int number);
 
 /// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.
 /// Their times begin at 0 with the record. A block that is not full at the end is left out.
-std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s);
+std::vector<wind::Reading> block_means(const SonicRecord& record, double interval_s);
 
 /// The readings of an instantaneous station: the last sample of each block, at its end.
-std::vector<wind::WindReading> instant_samples(const SonicRecord& record, double interval_s);
+std::vector<wind::Reading> instant_samples(const SonicRecord& record, double interval_s);
 
 /// A made-up wind of known spectrum, along east: von Karman's along and across it (engine/wind/README.md W5), the
 /// latter with 0.8 of the deviation; 54 minutes, ten samples a second.

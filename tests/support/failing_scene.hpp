@@ -20,7 +20,7 @@ class FailingScene final : public scenes::Scene {
   FailingScene(const scenes::Scene& first, const scenes::Scene& larger)
       : skeleton_(first.skeleton()), pose_(first.pose()), larger_(larger.skeleton()), larger_pose_(larger.pose()) {}
 
-  void shift(const wind::ground::GroundWind& /*wind*/, double /*dt_s*/) noexcept override {
+  void shift(const wind::ground::Wind& /*wind*/, double /*dt_s*/) noexcept override {
     if (++ticks_ <= kGoodTicks) return;
     skeleton_ = std::move(larger_);
     pose_ = std::move(larger_pose_);
@@ -42,12 +42,12 @@ class FailingScene final : public scenes::Scene {
 
 /// The default configuration, in which the meadow is a FailingScene.
 inline daemon::settings::Config config_with_failing_scene() {
-  static const scenes::SceneDescription* const kMeadow = daemon::settings::default_config().scenes.at(0).kind;
-  static const scenes::SceneDescription kFailing{
+  static const scenes::Description* const kMeadow = daemon::settings::default_config().scenes.at(0).kind;
+  static const scenes::Description kFailing{
       .name = kMeadow->name,
       .summary = kMeadow->summary,
       .parameters = kMeadow->parameters,
-      .make = [](const ParameterValues& values, const scenes::SceneSetup& setup) -> std::unique_ptr<scenes::Scene> {
+      .make = [](const ParameterValues& values, const scenes::Setup& setup) -> std::unique_ptr<scenes::Scene> {
         ParameterValues small = values;
         small.set("blades_across", std::int64_t{10});
         return std::make_unique<FailingScene>(*kMeadow->make(small, setup), *kMeadow->make(values, setup));

@@ -12,16 +12,16 @@ namespace yuragi {
 /// A line without a device: the test says what comes of each request.
 struct FakeLine {
   bool can_open = true;
-  std::vector<drivers::decode::modbus::ModbusRequest> requests;
+  std::vector<drivers::decode::modbus::Request> requests;
   int opened = 0;
   int settled = 0;
   /// What a request brings, message after message; silence when they are used up.
-  std::function<std::deque<drivers::bus::BusStatus>(const drivers::decode::modbus::ModbusRequest&)> statuses;
-  std::function<std::vector<std::uint8_t>(const drivers::decode::modbus::ModbusRequest&)> message;
+  std::function<std::deque<drivers::bus::Status>(const drivers::decode::modbus::Request&)> statuses;
+  std::function<std::vector<std::uint8_t>(const drivers::decode::modbus::Request&)> message;
 };
 
 /// A whole answer to `request`, on TCP.
-inline std::vector<std::uint8_t> reply_with(const drivers::decode::modbus::ModbusRequest& request,
+inline std::vector<std::uint8_t> reply_with(const drivers::decode::modbus::Request& request,
                                             const std::vector<std::uint16_t>& registers) {
   std::vector<std::uint8_t> bytes = {static_cast<std::uint8_t>(request.transaction >> 8U),
                                      static_cast<std::uint8_t>(request.transaction & 0xFFU),
@@ -57,18 +57,18 @@ class FakeConnection final : public drivers::bus::ModbusConnection {
     ++line_.settled;
     return 0;
   }
-  bool send(const drivers::decode::modbus::ModbusRequest& request, const drivers::bus::ModbusPatience&) override {
+  bool send(const drivers::decode::modbus::Request& request, const drivers::bus::ModbusPatience&) override {
     line_.requests.push_back(request);
     coming_ = line_.statuses(request);
     return true;
   }
-  drivers::bus::BusMessage receive(std::span<std::uint8_t, drivers::decode::modbus::kModbusMaxMessage> buffer,
-                                   const drivers::bus::Interruption& interruption) override {
-    if (interruption.is_set()) return {drivers::bus::BusStatus::kInterrupted};
-    if (coming_.empty()) return {drivers::bus::BusStatus::kSilence};
-    const drivers::bus::BusStatus status = coming_.front();
+  drivers::bus::Message receive(std::span<std::uint8_t, drivers::decode::modbus::kModbusMaxMessage> buffer,
+                                const drivers::bus::Interruption& interruption) override {
+    if (interruption.is_set()) return {drivers::bus::Status::kInterrupted};
+    if (coming_.empty()) return {drivers::bus::Status::kSilence};
+    const drivers::bus::Status status = coming_.front();
     coming_.pop_front();
-    if (status != drivers::bus::BusStatus::kMessage) return {status};
+    if (status != drivers::bus::Status::kMessage) return {status};
     const auto bytes = line_.message(line_.requests.back());
     std::ranges::copy(bytes, buffer.begin());
     return {status, bytes.size()};
@@ -77,7 +77,7 @@ class FakeConnection final : public drivers::bus::ModbusConnection {
  private:
   FakeLine& line_;
   bool is_open_ = false;
-  std::deque<drivers::bus::BusStatus> coming_;
+  std::deque<drivers::bus::Status> coming_;
 };
 
 }  // namespace yuragi

@@ -19,7 +19,7 @@ inline const std::shared_ptr<const wind::turbulence::GustNoise>& shared_gusts() 
 class GustyWind {
  public:
   /// `deviation_m_s`: of each octave, along the wind and across it.
-  GustyWind(wind::WindVector mean, float deviation_m_s) : wind_(mean) {
+  GustyWind(wind::Vector mean, float deviation_m_s) : wind_(mean) {
     const double speed_m_s = std::hypot(mean.u_m_s, mean.v_m_s);
     if (speed_m_s > 0.0) wind_.gusts.ahead = (1.0 / speed_m_s) * mean;
     wind_.advection = mean;
@@ -27,15 +27,15 @@ class GustyWind {
     wind_.gusts.across_m_s.fill(deviation_m_s);
   }
 
-  const wind::ground::GroundWind& step(double dt_s) {
+  const wind::ground::Wind& step(double dt_s) {
     shared_gusts()->carry(wind_.gusts.carried, wind_.everywhere.u_m_s, -wind_.everywhere.v_m_s, dt_s);
     wind_.tick = ++tick_;
     return wind_;
   }
-  const wind::ground::GroundWind& wind() const { return wind_; }
+  const wind::ground::Wind& wind() const { return wind_; }
 
  private:
-  wind::ground::GroundWind wind_;
+  wind::ground::Wind wind_;
   std::uint64_t tick_ = 0;
 };
 

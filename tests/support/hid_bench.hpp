@@ -23,7 +23,7 @@ namespace yuragi::test {
 /// in Linux' hidraw.
 class HidBus {
  public:
-  HidBus(std::unique_ptr<simulators::usb::UsbDevice> device, drivers::bus::HidId id)
+  HidBus(std::unique_ptr<simulators::usb::Device> device, drivers::bus::HidId id)
       : device_(std::move(device)), id_(id) {}
 
   ManualClock clock;
@@ -38,7 +38,7 @@ class HidBus {
 
   double now_s() const { return seconds(clock.now().mono - start_); }
   bool is_plugged_in() const { return is_plugged_in_; }
-  simulators::usb::UsbDevice& device() { return *device_; }
+  simulators::usb::Device& device() { return *device_; }
   drivers::bus::HidId id() const { return id_; }
 
   /// Lets time pass; up to `until` if no report comes first and `stops_at_report`.
@@ -64,9 +64,9 @@ class HidBus {
   void close() { is_open_ = false; }
   bool is_open() const { return is_open_ && is_plugged_in_; }
 
-  std::optional<simulators::usb::UsbBytes> next_report() {
+  std::optional<simulators::usb::Bytes> next_report() {
     if (reports_.empty()) return std::nullopt;
-    simulators::usb::UsbBytes report = std::move(reports_.front());
+    simulators::usb::Bytes report = std::move(reports_.front());
     reports_.pop_front();
     return report;
   }
@@ -91,12 +91,12 @@ class HidBus {
     if (auto report = device_->in(1, 64); report && reports_.size() < kKernelKeeps) reports_.push_back(*report);
   }
 
-  std::unique_ptr<simulators::usb::UsbDevice> device_;
+  std::unique_ptr<simulators::usb::Device> device_;
   drivers::bus::HidId id_;
   MonoTime start_ = clock.now().mono;
   bool is_plugged_in_ = true;
   bool is_open_ = false;
-  std::deque<simulators::usb::UsbBytes> reports_;  ///< that the kernel keeps for whoever has it open
+  std::deque<simulators::usb::Bytes> reports_;  ///< that the kernel keeps for whoever has it open
   std::optional<simulators::core::PlayedMoment> measured_;
 };
 
@@ -166,14 +166,14 @@ class HidBench {
  public:
   explicit HidBench(std::string_view model, drivers::hid::StationTiming timing = {}, std::uint64_t seed = 1)
       : HidBench(simulators::usb::make_hid_station(model, timing.pace, seed), kind_of_model(model), timing) {}
-  HidBench(std::unique_ptr<simulators::usb::UsbDevice> device, const drivers::hid::StationKind& kind,
+  HidBench(std::unique_ptr<simulators::usb::Device> device, const drivers::hid::StationKind& kind,
            drivers::hid::StationTiming timing = {})
       : bus(std::move(device), kind.id),
         sensor(drivers::hid::station_kinds(), drivers::bus::HidPlace{}, timing, 1, std::make_unique<BridgedHid>(bus)) {}
 
   HidBus bus;
   RecordingSink sink;
-  drivers::hid::HidSensor sensor;
+  drivers::hid::Sensor sensor;
   int polls = 0;
 
   /// Polls the sensor whenever it wants to be, for a time.

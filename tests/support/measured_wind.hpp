@@ -18,8 +18,8 @@ class MeasuredWind {
  public:
   static constexpr double kTick_s = 1.0 / 60.0;
 
-  MeasuredWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, wind::WindVector mean,
-               std::vector<wind::blend::BlendSourceSettings> sources = {wind::blend::BlendSourceSettings()},
+  MeasuredWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, wind::Vector mean,
+               std::vector<wind::blend::SourceSettings> sources = {wind::blend::SourceSettings()},
                int ticks_a_reading = 6)
       : mean_(mean),
         source_count_(sources.size()),
@@ -33,35 +33,35 @@ class MeasuredWind {
       estimator_.accept(source, reading(source));
     }
     ++tick_;
-    const wind::WindState state = estimator_.advance(now_);
+    const wind::State state = estimator_.advance(now_);
     wind::ground::DrivingWind wind{state, estimator_.ground(), estimator_.stroke()};
     wind.ground.tick = static_cast<std::uint64_t>(tick_);
     return wind;
   }
 
  private:
-  static wind::blend::BlendSettings settings(std::vector<wind::blend::BlendSourceSettings> sources) {
-    wind::blend::BlendSettings settings;
+  static wind::blend::Settings settings(std::vector<wind::blend::SourceSettings> sources) {
+    wind::blend::Settings settings;
     settings.sources = std::move(sources);
     return settings;
   }
-  wind::WindReading reading(std::size_t source) const {
+  wind::Reading reading(std::size_t source) const {
     // A sine in each octave from 0.02 to 2.6 Hz, weaker by k^(-1/3); other sources have other phases.
-    wind::WindVector wind = mean_;
+    wind::Vector wind = mean_;
     for (int octave = 0; octave < 8; ++octave) {
       const double phase_rad = 0.04 * std::numbers::pi * std::exp2(octave) * kTick_s * static_cast<double>(tick_) +
                                2.4 * octave + static_cast<double>(source);
       const double height_m_s = 0.08 * speed_of(mean_) * std::exp2(-octave / 3.0);
-      wind = wind + height_m_s * wind::WindVector{std::sin(phase_rad), std::cos(1.3 * phase_rad)};
+      wind = wind + height_m_s * wind::Vector{std::sin(phase_rad), std::cos(1.3 * phase_rad)};
     }
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time.mono = now_;
     reading.speed_m_s = speed_of(wind);
     reading.direction_deg = wind::direction_from_deg(wind);
     return reading;
   }
 
-  wind::WindVector mean_;
+  wind::Vector mean_;
   std::size_t source_count_;
   int ticks_a_reading_;
   wind::blend::BlendedEstimator estimator_;

@@ -10,7 +10,7 @@
 namespace yuragi {
 
 /// Keeps whatever a sensor says.
-struct RecordingSink final : drivers::sensor::SensorSink {
+struct RecordingSink final : drivers::sensor::Sink {
   struct Link {
     wind::LinkState state;
     std::string detail;
@@ -21,15 +21,15 @@ struct RecordingSink final : drivers::sensor::SensorSink {
     std::vector<std::uint8_t> message;
   };
 
-  std::vector<wind::WindReading> readings;
-  std::vector<wind::WindReading> believed;  ///< those of them that a hub would give to the wind
+  std::vector<wind::Reading> readings;
+  std::vector<wind::Reading> believed;  ///< those of them that a hub would give to the wind
   std::vector<wind::StationQuantities> station_quantities;
   std::vector<drivers::decode::Refusal> refusals;
   std::vector<Link> links;
   std::vector<Raw> raws;
   wind::judging::ReadingJudge judge;
 
-  void reading(const wind::WindReading& reading) override {
+  void reading(const wind::Reading& reading) override {
     readings.push_back(reading);
     if (wind::is_plausible(reading) && judge.judge(reading)) believed.push_back(reading);
   }

@@ -17,7 +17,7 @@
 namespace yuragi {
 
 /// A sensor on a thread of its own and in real time, as the daemon runs it; the test looks at what it has said.
-class RunningSensor final : private drivers::sensor::SensorSink {
+class RunningSensor final : private drivers::sensor::Sink {
  public:
   explicit RunningSensor(std::unique_ptr<drivers::sensor::Sensor> sensor)
       : sensor_(std::move(sensor)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -39,7 +39,7 @@ class RunningSensor final : private drivers::sensor::SensorSink {
   bool take_until(RecordingSink& taken, Condition&& holds, Nanoseconds at_most = kHang) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, at_most, [&] {
-      for (const wind::WindReading& reading : take(sink_.readings, whole_.readings)) taken.reading(reading);
+      for (const wind::Reading& reading : take(sink_.readings, whole_.readings)) taken.reading(reading);
       for (const drivers::decode::Refusal why : take(sink_.refusals, whole_.refusals)) taken.refused(why);
       for (const auto& link : take(sink_.links, whole_.links)) taken.link(link.state, link.detail);
       for (const auto& raw : take(sink_.raws, whole_.raws)) taken.raw(raw.direction, raw.message);
@@ -111,7 +111,7 @@ class RunningSensor final : private drivers::sensor::SensorSink {
     }
     changed_.notify_all();
   }
-  void reading(const wind::WindReading& reading) override {
+  void reading(const wind::Reading& reading) override {
     change([&](RecordingSink& sink) { sink.reading(reading); });
   }
   void quantities(const wind::StationQuantities& quantities) override {

@@ -8,7 +8,7 @@ namespace yuragi {
 
 /// A wind that is the same on every machine to the last bit: sums, products and quotients alone. It swells from calm to
 /// 12 m/s and dies away within 200 ticks, and meanwhile turns to and fro through about 250 degrees.
-inline wind::WindVector scripted_wind(std::uint64_t tick) {
+inline wind::Vector scripted_wind(std::uint64_t tick) {
   const auto wave = [](std::uint64_t at, std::uint64_t period) {  // a triangle: 0 at 0, 1 in the middle, 0 again
     const double phase = static_cast<double>(at % period) / static_cast<double>(period);
     return phase < 0.5 ? 2.0 * phase : 2.0 - 2.0 * phase;

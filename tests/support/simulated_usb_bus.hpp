@@ -18,7 +18,7 @@ struct SimulatedUsbBus {
   struct Socket {
     std::string port;
     std::string serial;  ///< as the bus shows it
-    std::unique_ptr<simulators::usb::UsbDevice> device;
+    std::unique_ptr<simulators::usb::Device> device;
   };
 
   explicit SimulatedUsbBus(ManualClock& its_clock) : clock(its_clock) {}
@@ -55,7 +55,7 @@ class SimulatedUsbDevice final : public drivers::bus::UsbDevice {
     std::vector<drivers::bus::PluggedUsbDevice> all;
     if (bus_.is_unplugged()) return all;
     for (const auto& socket : bus_.sockets) {
-      const simulators::usb::UsbBytes& bytes = socket.device->descriptors().device;
+      const simulators::usb::Bytes& bytes = socket.device->descriptors().device;
       const auto id = [&bytes](std::size_t at) { return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8U); };
       all.push_back({.id = {id(8), id(10)},
                      .port = socket.port,
@@ -114,14 +114,14 @@ class SimulatedUsbDevice final : public drivers::bus::UsbDevice {
     bus_.clock.advance(timeout);
     return {drivers::bus::UsbStatus::kTimeout};
   }
-  static drivers::bus::UsbTransfer copy(const simulators::usb::UsbBytes& reply, std::span<std::uint8_t> data) {
+  static drivers::bus::UsbTransfer copy(const simulators::usb::Bytes& reply, std::span<std::uint8_t> data) {
     const std::size_t size = std::min(reply.size(), data.size());
     std::copy_n(reply.begin(), size, data.begin());
     return {reply.size() > data.size() ? drivers::bus::UsbStatus::kOverflow : drivers::bus::UsbStatus::kDone, size};
   }
 
   SimulatedUsbBus& bus_;
-  simulators::usb::UsbDevice* open_ = nullptr;
+  simulators::usb::Device* open_ = nullptr;
 };
 
 }  // namespace yuragi

@@ -28,7 +28,7 @@ class StationFault : public testing::Test {
     });
   }
   void expect_only_the_wind() const {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
+    for (const wind::Reading& reading : bench_.sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, speed_m_s_, 1e-9);
       EXPECT_EQ(reading.direction_deg, kDirection_deg);
     }
@@ -65,7 +65,7 @@ class StationFault : public testing::Test {
     bench_.run(2.0 * interval_s_, simulators::core::FaultKind::kSpike);
     EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.3);
     EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-    for (const wind::WindReading& believed : bench_.sink.believed) EXPECT_NEAR(believed.speed_m_s, speed_m_s_, 1e-9);
+    for (const wind::Reading& believed : bench_.sink.believed) EXPECT_NEAR(believed.speed_m_s, speed_m_s_, 1e-9);
     expect_return();
   }
   static constexpr double kDirection_deg = 123.0;

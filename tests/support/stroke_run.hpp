@@ -14,7 +14,7 @@ class StrokeRun {
  public:
   static constexpr double kTick_s = 1.0 / 60.0;
 
-  explicit StrokeRun(std::vector<wind::WindVector> places_east_south_m) {
+  explicit StrokeRun(std::vector<wind::Vector> places_east_south_m) {
     stroke_.pen_count = places_east_south_m.size();
     for (std::size_t i = 0; i < stroke_.pen_count; ++i) {
       wind::ground::WindPen& pen = stroke_.pens[i];
@@ -33,7 +33,7 @@ class StrokeRun {
   }
 
   /// From now on the mean wind is this.
-  void blow(wind::WindVector wind) {
+  void blow(wind::Vector wind) {
     wind_ = wind;
     const double speed_m_s = speed_of(wind);
     if (speed_m_s > 0.0) stroke_.ahead = (1.0 / speed_m_s) * wind;
@@ -73,13 +73,13 @@ class StrokeRun {
     for (int i = 0; i < static_cast<int>(std::lround(duration_s / kTick_s)); ++i) tick(tapes, set);
   }
 
-  wind::WindVector wind() const { return wind_; }
+  wind::Vector wind() const { return wind_; }
   wind::ground::WindStroke& stroke() { return stroke_; }
   wind::ground::WindPen& pen(std::size_t index) { return stroke_.pens[index]; }
 
  private:
   wind::ground::WindStroke stroke_;
-  wind::WindVector wind_;
+  wind::Vector wind_;
 };
 
 /// All bands have this, and know so much of each octave.

@@ -39,9 +39,9 @@ class ImpatientPort final : public drivers::bus::BytePort {
 };
 
 /// The real wire, which tells when something is said.
-class ObservedWire final : public simulators::text::TextWire {
+class ObservedWire final : public simulators::text::Wire {
  public:
-  ObservedWire(std::unique_ptr<simulators::text::TextWire> wire, bool& has_written)
+  ObservedWire(std::unique_ptr<simulators::text::Wire> wire, bool& has_written)
       : wire_(std::move(wire)), has_written_(has_written) {}
 
   std::span<const simulators::core::FaultKind> known_faults() const override { return wire_->known_faults(); }
@@ -59,7 +59,7 @@ class ObservedWire final : public simulators::text::TextWire {
   std::string place() const override { return wire_->place(); }
 
  private:
-  std::unique_ptr<simulators::text::TextWire> wire_;
+  std::unique_ptr<simulators::text::Wire> wire_;
   bool& has_written_;
 };
 
@@ -68,7 +68,7 @@ class ObservedWire final : public simulators::text::TextWire {
 class TextBench {
  public:
   /// What stands between the two: a wire's faults are tried by its `know`.
-  std::unique_ptr<simulators::text::TextWire> observed(std::unique_ptr<simulators::text::TextWire> wire) {
+  std::unique_ptr<simulators::text::Wire> observed(std::unique_ptr<simulators::text::Wire> wire) {
     return std::make_unique<ObservedWire>(std::move(wire), has_written_);
   }
   std::unique_ptr<drivers::bus::BytePort> port(const drivers::bus::BytePortAddress& address) {

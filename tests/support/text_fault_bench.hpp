@@ -30,8 +30,8 @@ class TextFaultBench : public testing::Test {
       : driver_name_(std::move(driver)), wind_(wind) {}
 
   /// `rate_hz`: how often the device speaks; 0: when it is asked. `given`: what is not the driver's default.
-  void connect(Wire wire, std::unique_ptr<simulators::text::TextDevice> device, double rate_hz,
-               ParameterValues::Map given, const MakeSensor& make_sensor) {
+  void connect(Wire wire, std::unique_ptr<simulators::text::Device> device, double rate_hz, ParameterValues::Map given,
+               const MakeSensor& make_sensor) {
     bench_.put(nullptr, nullptr);  // the name of the port is free again
     auto carried = wire == Wire::kPty   ? simulators::text::make_pty_wire((folder_ / "device").string())
                    : wire == Wire::kTcp ? simulators::text::make_tcp_wire("127.0.0.1", free_port(SOCK_STREAM))
@@ -44,7 +44,7 @@ class TextFaultBench : public testing::Test {
       given["host"] = std::string("127.0.0.1");
       given["port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};
     }
-    bench_.put(std::make_unique<simulators::text::TextSimulator>(
+    bench_.put(std::make_unique<simulators::text::Simulator>(
                    std::move(device), bench_.observed(std::move(carried)), rate_hz,
                    simulators::core::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
                make_sensor(values_for(driver_name_, given), bench_));

@@ -16,8 +16,8 @@ struct UsbBench {
   ManualClock clock;
   SimulatedUsbBus bus{clock};
   RecordingSink sink;
-  drivers::usb::UsbSettings settings;
-  std::unique_ptr<drivers::usb::UsbSensor> sensor;
+  drivers::usb::Settings settings;
+  std::unique_ptr<drivers::usb::Sensor> sensor;
   MonoTime due{};
 
   /// With one device plugged in.
@@ -34,7 +34,7 @@ struct UsbBench {
   /// One poll, when it is due; makes the sensor the first time.
   Nanoseconds poll() {
     if (!sensor)
-      sensor = std::make_unique<drivers::usb::UsbSensor>(settings, 1, std::make_unique<SimulatedUsbDevice>(bus));
+      sensor = std::make_unique<drivers::usb::Sensor>(settings, 1, std::make_unique<SimulatedUsbDevice>(bus));
     clock.advance_to(due);
     due = sensor->poll(clock, sink);
     return due - clock.now().mono;

@@ -21,9 +21,9 @@ TEST(DriverTest, GivesEachContextAGlslThatItKnows) {
 }
 
 TEST(DriverTest, AsksForTheNewestFirstAndForACoreContextWhereThereIsSuchAThing) {
-  EXPECT_TRUE(std::ranges::is_sorted(kVersionsToAskFor, std::ranges::greater{}, &GlVersion::number));
-  EXPECT_TRUE((GlVersion{3, 3}.is_core()));
-  EXPECT_FALSE((GlVersion{3, 1}.is_core()));
+  EXPECT_TRUE(std::ranges::is_sorted(kVersionsToAskFor, std::ranges::greater{}, &Version::number));
+  EXPECT_TRUE((Version{3, 3}.is_core()));
+  EXPECT_FALSE((Version{3, 1}.is_core()));
 }
 
 TEST(DriverTest, Opengl31IsEnoughWithTheExtensions) {

@@ -75,7 +75,7 @@ wire::Bytes frame_of(const pose::Skeleton& meadow, const pose::Pose& pose, std::
   info.sequence = info.tick = sequence;
   info.time_s = time_s;
   info.wind.wind = wind::wind_from(6.0, toward_deg + 180.0);
-  info.wind.source = wind::WindSource::kLive;
+  info.wind.source = wind::Source::kLive;
   info.wind.live_weight = 1.0;
   const auto bytes = encoder.encode(info, skeletons, poses);
   return {bytes.begin(), bytes.end()};

@@ -389,7 +389,7 @@ wire::Bytes frame_of(const std::vector<wire::SceneModel>& models, std::span<cons
   info.sequence = info.tick = sequence;
   info.time_s = time_s;
   info.wind.wind = wind::wind_from(12.0 * strength, 270.0);
-  info.wind.source = wind::WindSource::kLive;
+  info.wind.source = wind::Source::kLive;
   info.wind.live_weight = 1.0;
   const auto bytes = encoder.encode(info, skeletons, pointers, opacities);
   return {bytes.begin(), bytes.end()};

@@ -72,7 +72,7 @@ void write(const ImVec4& color, const std::string& text) {
 }
 
 /// A rose that turns with the camera, and an arrow the way the wind blows.
-void draw_compass(const wind::WindState& wind, double heading_deg, float radius) {
+void draw_compass(const wind::State& wind, double heading_deg, float radius) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 center(corner.x + radius, corner.y + radius);
@@ -133,7 +133,7 @@ void write_wind(const OverlayFacts& facts, float scale) {
   write(fmt::format("from {:.0f}\u00b0 {}", direction_deg, nearest_compass_point(direction_deg)));
   if (const std::string place = wind_place_text(facts.wind); !place.empty()) write(kQuiet, place);
   switch (facts.wind.source) {
-    case wind::WindSource::kLive:
+    case wind::Source::kLive:
       if (is_true_of_all_that_speak(facts.sensors, &wire::SensorStatus::replayed)) {
         write(kWarn, "REPLAY of a recording");
       } else {
@@ -141,10 +141,10 @@ void write_wind(const OverlayFacts& facts, float scale) {
         write(kGood, is_simulated ? "live, simulated sensor" : "live sensor");
       }
       break;
-    case wind::WindSource::kHandover:
+    case wind::Source::kHandover:
       write(kWarn, fmt::format("handing over, {:.0f} % live", 100.0 * facts.wind.live_weight));
       break;
-    case wind::WindSource::kDefault:
+    case wind::Source::kDefault:
       write(kQuiet, "default wind, no sensor");
       break;
   }
@@ -203,7 +203,7 @@ void write_stream(const OverlayFacts& facts) {
     case stream::Playback::kLive:
       break;
   }
-  write(facts.stream.state == stream::StreamState::kConnected ? kQuiet : kWarn, facts.stream.text);
+  write(facts.stream.state == stream::State::kConnected ? kQuiet : kWarn, facts.stream.text);
   if (!facts.age.empty()) {
     ImGui::PushTextWrapPos(kReasonWidthInLetters * ImGui::GetFontSize());
     write(kQuiet, facts.age);

@@ -22,9 +22,9 @@ class Panel;
 
 /// What the overlay shows.
 struct OverlayFacts {
-  wind::WindState wind;
+  wind::State wind;
   stream::Playback playback = stream::Playback::kNothing;
-  stream::StreamStatus stream;
+  stream::Status stream;
   const wire::Sensors* sensors = nullptr;  ///< null: none has come yet
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;

@@ -58,7 +58,7 @@ double utc_at(double moment_s) {
   return seconds(std::chrono::system_clock::now().time_since_epoch()) + moment_s - now_s();
 }
 
-stream::StreamOptions address_of(const picture::ViewerOptions& options) {
+stream::Options address_of(const picture::ViewerOptions& options) {
   const auto address = parse_address(options.connect, wire::kDefaultPort);
   if (!address) throw picture::ViewerExit(EX_USAGE, "--connect: " + address.error().message);
   if (address->port == 0) throw picture::ViewerExit(EX_USAGE, "--connect: port 0 cannot be connected to");
@@ -106,7 +106,7 @@ class Viewer::Show {
     const look::Quality first_quality = pace::quality_for(look::Quality::kAuto, is_software_);
     renderer_->set_own_quality(first_quality);
     if (window_) {
-      const pace::PaceLadder ladder(look::Quality::kAuto, display_interval_s());
+      const pace::Ladder ladder(look::Quality::kAuto, display_interval_s());
       pace_.emplace(ladder, is_software_ ? ladder.slowest_of(first_quality) : 0);
     }
     if (output_ && output_->screen) see_through(*output_->screen);
@@ -237,7 +237,7 @@ class Viewer::Show {
 
   /// Says a change in the log.
   void tell_quality() {
-    pace::PaceStep step = pace_ ? pace_->step() : pace::PaceStep{};
+    pace::Step step = pace_ ? pace_->step() : pace::Step{};
     step.quality = renderer_->quality();
     if (step == told_) return;
     const std::string text = pace::quality_text(step.quality, step.part, step.refreshes);
@@ -277,7 +277,7 @@ class Viewer::Show {
 
   /// How much is drawn of the next picture, after one of this size.
   void choose_pace(const PixelSize& size, std::optional<double> work_s) {
-    pace_->set_ladder(pace::PaceLadder(renderer_->wanted_quality(), display_interval_s()));
+    pace_->set_ladder(pace::Ladder(renderer_->wanted_quality(), display_interval_s()));
     if (size != paced_size_) pace_->settle();
     paced_size_ = size;
     pace_->advance(picture_passed_s_, work_s);
@@ -420,7 +420,7 @@ class Viewer::Show {
   /// Nothing is asked of the daemon before a person wants to see the panel.
   void advance_panel(const stream::Inbox& inbox) {
     if (inbox.is_of_new_connection) panel_.set_connected(false);
-    panel_.set_connected(connection_.status().state == stream::StreamState::kConnected);
+    panel_.set_connected(connection_.status().state == stream::State::kConnected);
     for (const wire::ControlReply& reply : inbox.replies) panel_.take_reply(reply);
     if (inbox.sensors) panel_.take_revision(inbox.sensors->parameters_revision);
     if (!has_panel_) return;
@@ -506,12 +506,12 @@ class Viewer::Show {
 
   const picture::ViewerOptions options_;
   const std::atomic<bool>& is_stopping_;
-  stream::StreamConnection connection_;
+  stream::Connection connection_;
   const std::optional<output::Output> output_;
   std::optional<Window> window_;                 // none for a picture in a file; the members below need its context
   std::optional<wall::Wall> wall_;               // of the window, where there is an output
   std::optional<picture::GlRenderer> renderer_;  // has a context of its own where there is no window
-  std::optional<picture::PictureDirector> director_;
+  std::optional<picture::Director> director_;
   std::optional<gl::Dimmer> dimmer_;
   std::optional<wall::TestCard> test_card_;
   std::optional<Overlay> overlay_;
@@ -519,8 +519,8 @@ class Viewer::Show {
 
   Watchdog watchdog_;
   bool is_software_ = false;
-  std::optional<pace::PaceKeeper> pace_;                  // of a window: a picture in a file has all
-  pace::PaceStep told_{.quality = look::Quality::kAuto};  // in the log
+  std::optional<pace::Keeper> pace_;                  // of a window: a picture in a file has all
+  pace::Step told_{.quality = look::Quality::kAuto};  // in the log
   PixelSize paced_size_;
   std::uint8_t said_given_up_ = 0;  // to the daemon
   int measured_pictures_ = 0;
@@ -542,7 +542,7 @@ class Viewer::Show {
   bool has_help_ = false;
   bool has_profiler_ = false;
   bool has_wind_ = false;
-  stream::StreamNotice notice_words_;
+  stream::Notice notice_words_;
   std::string notice_;  // empty: none
   PausedMoment paused_;
   WindTrace wind_trace_;

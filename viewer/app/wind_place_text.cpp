@@ -4,7 +4,7 @@
 
 namespace yuragi::viewer::app {
 
-std::string wind_place_text(const wind::WindState& wind) {
+std::string wind_place_text(const wind::State& wind) {
   if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
   const std::string where = wind.is_place_configured ? "at the sensors" : "at the edge";
   const auto number = [](double value) { return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0); };

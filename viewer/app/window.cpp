@@ -32,7 +32,7 @@ void begin_glfw() {
 }
 
 /// For the windows that are created from now on: those of a wall share the first one's context.
-void ask_for(const gl::GlVersion& version) {
+void ask_for(const gl::Version& version) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version.major);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version.minor);
   glfwWindowHint(GLFW_OPENGL_PROFILE, version.is_core() ? GLFW_OPENGL_CORE_PROFILE : GLFW_OPENGL_ANY_PROFILE);
@@ -41,7 +41,7 @@ void ask_for(const gl::GlVersion& version) {
 
 /// With a current context that is enough; null if there is none.
 GLFWwindow* create_with_newest_gl(const WindowOptions& options) {
-  for (const gl::GlVersion& version : gl::kVersionsToAskFor) {
+  for (const gl::Version& version : gl::kVersionsToAskFor) {
     ask_for(version);
     GLFWwindow* const made = glfwCreateWindow(options.width_px, options.height_px, "Yuragi", nullptr, nullptr);
     if (made == nullptr) continue;

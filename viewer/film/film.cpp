@@ -35,9 +35,9 @@ int picture_count(double duration_s, double fps) {
 }
 
 /// Takes a stream's messages, up to the frame that a moment needs.
-class FilmReader {
+class Reader {
  public:
-  FilmReader(FilmStream& stream, picture::PictureDirector& director, const std::string& source)
+  Reader(Stream& stream, picture::Director& director, const std::string& source)
       : stream_(stream), director_(director), source_(source) {}
 
   /// Reads on until there is a frame that is not before so long after the first one. False where the stream ends first.
@@ -79,8 +79,8 @@ class FilmReader {
     utc_s_ = 1e-9 * static_cast<double>(frame.info.utc_ns);
   }
 
-  FilmStream& stream_;
-  picture::PictureDirector& director_;
+  Stream& stream_;
+  picture::Director& director_;
   const std::string& source_;
   stream::LockstepTimeline timeline_;
   bool has_first_ = false;
@@ -132,11 +132,11 @@ std::unique_ptr<picture::Renderer> make_renderer(const picture::ViewerOptions& o
 
 }  // namespace
 
-bool make_film(const picture::ViewerOptions& options, FilmStream& stream, picture::Renderer& renderer,
-               FilmOutput& output, const FilmProgress& progress, const std::atomic<bool>& is_stopping) {
+bool make_film(const picture::ViewerOptions& options, Stream& stream, picture::Renderer& renderer, Output& output,
+               const Progress& progress, const std::atomic<bool>& is_stopping) {
   const std::string source = std::filesystem::path(options.render).filename().string();
-  picture::PictureDirector director(options, renderer, source);
-  FilmReader reader(stream, director, source);
+  picture::Director director(options, renderer, source);
+  Reader reader(stream, director, source);
   int made = 0;
   for (;;) {
     const double time_s = made / options.fps;
@@ -160,7 +160,7 @@ bool make_film(const picture::ViewerOptions& options, FilmStream& stream, pictur
 void render_recording(const picture::ViewerOptions& options, const std::atomic<bool>& is_stopping) {
   // A reader that has gone and data that does not fit are reported as errors; they do not end the program at once.
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
-  const std::unique_ptr<FilmOutput> output = make_film_output(
+  const std::unique_ptr<Output> output = make_film_output(
       options.out, {.width_px = options.width_px, .height_px = options.height_px, .pictures_per_s = options.fps},
       is_stopping);
   ReplayFilmStream stream(replay_arguments(options), is_stopping);

@@ -56,9 +56,9 @@ class MadeFolder {
   std::vector<std::filesystem::path> made_;  // parents first
 };
 
-class PictureFolder final : public FilmOutput {
+class PictureFolder final : public Output {
  public:
-  PictureFolder(std::filesystem::path folder, const FilmFormat& format)
+  PictureFolder(std::filesystem::path folder, const Format& format)
       : folder_(std::move(folder)), made_(folder_), format_(format) {
     std::error_code error;
     for (std::filesystem::directory_iterator entry(folder_, error), end; !error && entry != end;
@@ -99,12 +99,12 @@ class PictureFolder final : public FilmOutput {
 
   std::filesystem::path folder_;
   MadeFolder made_;
-  FilmFormat format_;
+  Format format_;
   int count_ = 0;
   bool is_finished_ = false;
 };
 
-class RawPictures final : public FilmOutput {
+class RawPictures final : public Output {
  public:
   explicit RawPictures(const std::atomic<bool>& is_stopping) : is_stopping_(is_stopping) {
     if (::isatty(STDOUT_FILENO) != 0) {
@@ -129,7 +129,7 @@ class RawPictures final : public FilmOutput {
 };
 
 /// Rec. 709, as players take a film of this size to be; every second color sample, which every player can show.
-std::vector<std::string> ffmpeg_command(const FilmFormat& format, const std::filesystem::path& file) {
+std::vector<std::string> ffmpeg_command(const Format& format, const std::filesystem::path& file) {
   return {"ffmpeg",
           "-nostdin",
           "-hide_banner",
@@ -169,9 +169,9 @@ std::vector<std::string> ffmpeg_command(const FilmFormat& format, const std::fil
           "file:" + file.string()};
 }
 
-class Video final : public FilmOutput {
+class Video final : public Output {
  public:
-  Video(std::filesystem::path file, const FilmFormat& format, const std::atomic<bool>& is_stopping)
+  Video(std::filesystem::path file, const Format& format, const std::atomic<bool>& is_stopping)
       : file_(std::move(file)),
         beside_(file_.string() + ".part-" + std::to_string(::getpid())),
         is_stopping_(is_stopping) {
@@ -239,8 +239,8 @@ std::string check_film_name(const std::string& name) {
   return "'" + name + "' is no film that can be made: give FILE.mp4, a folder for pictures, or - for standard output";
 }
 
-std::unique_ptr<FilmOutput> make_film_output(const std::string& name, const FilmFormat& format,
-                                             const std::atomic<bool>& is_stopping) {
+std::unique_ptr<Output> make_film_output(const std::string& name, const Format& format,
+                                         const std::atomic<bool>& is_stopping) {
   if (name == "-") return std::make_unique<RawPictures>(is_stopping);
   if (is_video(name)) return std::make_unique<Video>(name, format, is_stopping);
   return std::make_unique<PictureFolder>(name, format);

@@ -14,9 +14,9 @@ inline constexpr int kExitInterrupted = 128 + SIGINT;
 
 /// Where the pictures of a film go. What is wrong throws ViewerExit. Without finish() the destructor removes every file
 /// and folder that this has made; what was there before stays.
-class FilmOutput {
+class Output {
  public:
-  virtual ~FilmOutput() = default;
+  virtual ~Output() = default;
 
   /// The next picture: 3 bytes a pixel, rows from the top down.
   virtual void write(std::span<const std::uint8_t> rgb) = 0;
@@ -26,7 +26,7 @@ class FilmOutput {
   virtual std::string text() const = 0;
 };
 
-struct FilmFormat {
+struct Format {
   int width_px = 0;
   int height_px = 0;
   double pictures_per_s = 30.0;
@@ -38,7 +38,7 @@ std::string check_film_name(const std::string& name);
 /// `name`: "-", the bytes of one picture after the other on standard output; FILE.mp4, which is made by ffmpeg as a
 /// child process and appears when it is whole; or a folder, which is made, for 000001.png and so on. Once `is_stopping`
 /// is set a write() that waits for its reader throws; it must outlive the output.
-std::unique_ptr<FilmOutput> make_film_output(const std::string& name, const FilmFormat& format,
-                                             const std::atomic<bool>& is_stopping);
+std::unique_ptr<Output> make_film_output(const std::string& name, const Format& format,
+                                         const std::atomic<bool>& is_stopping);
 
 }  // namespace yuragi::viewer::film

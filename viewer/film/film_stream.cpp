@@ -49,7 +49,7 @@ std::optional<wire::Message> ReplayFilmStream::next() {
   for (;;) {
     if (auto message = reader_.next()) {
       if (*message) return std::move(**message);
-      if (message->error() == wire::WireError::kUnknown) continue;  // of a newer version
+      if (message->error() == wire::Error::kUnknown) continue;  // of a newer version
       throw picture::ViewerExit(EX_SOFTWARE,
                                 fmt::format("`yuragi replay` sent what is no message of a stream ({}): is it of "
                                             "another version than this program?",

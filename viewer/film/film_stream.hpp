@@ -13,9 +13,9 @@
 namespace yuragi::viewer::film {
 
 /// What a film is made of: a stream that waits for its reader.
-class FilmStream {
+class Stream {
  public:
-  virtual ~FilmStream() = default;
+  virtual ~Stream() = default;
 
   /// The next message; nothing at the stream's end. Throws ViewerExit where it is none, or its sender has failed.
   virtual std::optional<wire::Message> next() = 0;
@@ -23,7 +23,7 @@ class FilmStream {
 
 /// A recording that `yuragi replay` plays, as a child process: each tick comes when it is asked for. It stands beside
 /// this program, or is found by PATH.
-class ReplayFilmStream final : public FilmStream {
+class ReplayFilmStream final : public Stream {
  public:
   /// `arguments`: those of `yuragi replay`, the recording first. `is_stopping` ends next() like the stream's end; must
   /// outlive this. Throws ViewerExit.

@@ -19,8 +19,8 @@ class CrossFade {
   void draw(const RenderTarget& target, float share);
 
  private:
-  GlProgram program_;
-  GlVertexArray no_attributes_;
+  Program program_;
+  VertexArray no_attributes_;
   GLint share_;
   PictureCopy before_{GL_NEAREST}, now_{GL_NEAREST};
 };

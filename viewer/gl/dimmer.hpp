@@ -13,8 +13,8 @@ class Dimmer {
   void draw(float brightness);
 
  private:
-  GlProgram program_;
-  GlVertexArray no_attributes_;
+  Program program_;
+  VertexArray no_attributes_;
 };
 
 }  // namespace yuragi::viewer::gl

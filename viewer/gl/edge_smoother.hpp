@@ -16,8 +16,8 @@ class EdgeSmoother {
   void draw(const RenderTarget& target);
 
  private:
-  GlProgram program_;
-  GlVertexArray no_attributes_;
+  Program program_;
+  VertexArray no_attributes_;
   PictureCopy copy_{GL_LINEAR};
 };
 

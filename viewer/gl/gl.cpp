@@ -12,11 +12,11 @@
 namespace yuragi::viewer::gl {
 namespace {
 
-struct GlShader {
-  explicit GlShader(GLenum stage) : name(glCreateShader(stage)) {}
-  ~GlShader() { glDeleteShader(name); }
-  GlShader(const GlShader&) = delete;
-  GlShader& operator=(const GlShader&) = delete;
+struct Shader {
+  explicit Shader(GLenum stage) : name(glCreateShader(stage)) {}
+  ~Shader() { glDeleteShader(name); }
+  Shader(const Shader&) = delete;
+  Shader& operator=(const Shader&) = delete;
   GLuint name;
 };
 
@@ -29,7 +29,7 @@ std::string file_of(std::string_view source, const std::string& otherwise) {
 
 std::atomic<std::size_t> compile_count{0};
 
-void compile(const GlShader& shader, const std::string& name, std::string_view source) {
+void compile(const Shader& shader, const std::string& name, std::string_view source) {
   // Lines from 10001 on are those of common.glsl.
   std::string text(glsl_version_line());
   text.append("\n#line 10001\n").append(shaders::kCommon).append("\n#line 1\n").append(source);
@@ -60,74 +60,74 @@ void GLAPIENTRY log_message(GLenum, GLenum type, GLuint, GLenum severity, GLsize
 
 }  // namespace
 
-GLuint GlBufferKind::make() {
+GLuint BufferKind::make() {
   GLuint name = 0;
   glGenBuffers(1, &name);
   return name;
 }
-void GlBufferKind::unmake(GLuint name) {
+void BufferKind::unmake(GLuint name) {
   glDeleteBuffers(1, &name);
 }
 
-GLuint GlTextureKind::make() {
+GLuint TextureKind::make() {
   GLuint name = 0;
   glGenTextures(1, &name);
   return name;
 }
-void GlTextureKind::unmake(GLuint name) {
+void TextureKind::unmake(GLuint name) {
   glDeleteTextures(1, &name);
 }
 
-GLuint GlSamplerKind::make() {
+GLuint SamplerKind::make() {
   GLuint name = 0;
   glGenSamplers(1, &name);
   return name;
 }
-void GlSamplerKind::unmake(GLuint name) {
+void SamplerKind::unmake(GLuint name) {
   glDeleteSamplers(1, &name);
 }
 
-GLuint GlVertexArrayKind::make() {
+GLuint VertexArrayKind::make() {
   GLuint name = 0;
   glGenVertexArrays(1, &name);
   return name;
 }
-void GlVertexArrayKind::unmake(GLuint name) {
+void VertexArrayKind::unmake(GLuint name) {
   glDeleteVertexArrays(1, &name);
 }
 
-GLuint GlFramebufferKind::make() {
+GLuint FramebufferKind::make() {
   GLuint name = 0;
   glGenFramebuffers(1, &name);
   return name;
 }
-void GlFramebufferKind::unmake(GLuint name) {
+void FramebufferKind::unmake(GLuint name) {
   glDeleteFramebuffers(1, &name);
 }
 
-GLuint GlRenderbufferKind::make() {
+GLuint RenderbufferKind::make() {
   GLuint name = 0;
   glGenRenderbuffers(1, &name);
   return name;
 }
-void GlRenderbufferKind::unmake(GLuint name) {
+void RenderbufferKind::unmake(GLuint name) {
   glDeleteRenderbuffers(1, &name);
 }
 
-GLuint GlProgramKind::make() {
+GLuint ProgramKind::make() {
   return glCreateProgram();
 }
-void GlProgramKind::unmake(GLuint name) {
+void ProgramKind::unmake(GLuint name) {
   glDeleteProgram(name);
 }
 
-GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment) {
-  const GlShader vertex_shader(GL_VERTEX_SHADER);
-  const GlShader fragment_shader(GL_FRAGMENT_SHADER);
+Program link_program(const std::string& name, std::string_view vertex, std::string_view fragment) {
+  const Shader vertex_shader(GL_VERTEX_SHADER);
+  const Shader fragment_shader(GL_FRAGMENT_SHADER);
   compile(vertex_shader, name + ".vert", vertex);
   compile(fragment_shader, name + ".frag", fragment);
 
-  GlProgram program;
+  Program program;
   glAttachShader(program.name(), vertex_shader.name);
   glAttachShader(program.name(), fragment_shader.name);
   glLinkProgram(program.name());
@@ -153,8 +153,8 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   return program;
 }
 
-GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const std::uint8_t> texels) {
-  GlTexture texture;
+Texture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const std::uint8_t> texels) {
+  Texture texture;
   glBindTexture(GL_TEXTURE_2D, texture.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, kept_as, side, side, 0, format, GL_UNSIGNED_BYTE, texels.data());
@@ -164,7 +164,7 @@ GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const 
   return texture;
 }
 
-void set_sampler(const GlProgram& program, const char* name, GLint unit) {
+void set_sampler(const Program& program, const char* name, GLint unit) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), name), unit);
 }

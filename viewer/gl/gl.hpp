@@ -14,20 +14,20 @@ namespace yuragi::viewer::gl {
 
 /// Owns one OpenGL object of a kind; movable. Kind::make() and Kind::unmake(name) are the GL calls.
 template <class Kind>
-class GlObject {
+class Object {
  public:
-  GlObject() : name_(Kind::make()) {}
+  Object() : name_(Kind::make()) {}
   // Not inlined: in std::optional::emplace() of what holds one, gcc 14 takes name_ for uninitialized there.
-  [[gnu::noinline]] ~GlObject() {
+  [[gnu::noinline]] ~Object() {
     if (name_ != 0) Kind::unmake(name_);
   }
-  GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
-  GlObject& operator=(GlObject&& other) noexcept {
+  Object(Object&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  Object& operator=(Object&& other) noexcept {
     std::swap(name_, other.name_);
     return *this;
   }
-  GlObject(const GlObject&) = delete;
-  GlObject& operator=(const GlObject&) = delete;
+  Object(const Object&) = delete;
+  Object& operator=(const Object&) = delete;
 
   GLuint name() const { return name_; }
 
@@ -35,42 +35,42 @@ class GlObject {
   GLuint name_;
 };
 
-struct GlBufferKind {
+struct BufferKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
-struct GlTextureKind {
+struct TextureKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
-struct GlSamplerKind {
+struct SamplerKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
-struct GlVertexArrayKind {
+struct VertexArrayKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
-struct GlFramebufferKind {
+struct FramebufferKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
-struct GlRenderbufferKind {
+struct RenderbufferKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
-struct GlProgramKind {
+struct ProgramKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
 
-using GlBuffer = GlObject<GlBufferKind>;
-using GlTexture = GlObject<GlTextureKind>;
-using GlSampler = GlObject<GlSamplerKind>;
-using GlVertexArray = GlObject<GlVertexArrayKind>;
-using GlFramebuffer = GlObject<GlFramebufferKind>;
-using GlRenderbuffer = GlObject<GlRenderbufferKind>;
-using GlProgram = GlObject<GlProgramKind>;
+using Buffer = Object<BufferKind>;
+using Texture = Object<TextureKind>;
+using Sampler = Object<SamplerKind>;
+using VertexArray = Object<VertexArrayKind>;
+using Framebuffer = Object<FramebufferKind>;
+using Renderbuffer = Object<RenderbufferKind>;
+using Program = Object<ProgramKind>;
 
 /// Where a program finds the block of uniforms that all renderers share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
@@ -115,14 +115,14 @@ enum TextureUnit : GLint {
 /// Compiles and links. Each stage begins with glsl_version_line() and shaders/picture/common.glsl. On an error throws
 /// std::runtime_error with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound
 /// as above.
-GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
+Program link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
 
 /// Sets a sampler of `program` to a texture unit. Unknown names are ignored, since the compiler drops uniforms that are
 /// not used.
-void set_sampler(const GlProgram& program, const char* name, GLint unit);
+void set_sampler(const Program& program, const char* name, GLint unit);
 
 /// A texture of `side` x `side` texels that repeats, with smaller ones for the distance.
-GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const std::uint8_t> texels);
+Texture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const std::uint8_t> texels);
 
 /// All that uploads count since the program began, in bytes. For measurements.
 std::size_t uploaded_bytes();
@@ -135,7 +135,7 @@ void count_upload(std::size_t bytes);
 /// Gives new content to a buffer that is drawn from every frame, without waiting for the GPU, which may still read the
 /// old content.
 template <class T>
-void stream_to(GLenum target, const GlBuffer& buffer, std::span<const T> content) {
+void stream_to(GLenum target, const Buffer& buffer, std::span<const T> content) {
   glBindBuffer(target, buffer.name());
   glBufferData(target, static_cast<GLsizeiptr>(content.size_bytes()), content.data(), GL_STREAM_DRAW);
   count_upload(content.size_bytes());

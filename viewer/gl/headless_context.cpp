@@ -62,7 +62,7 @@ struct HeadlessContext::State {
         eglChooseConfig(display, kConfig.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
       return false;
     }
-    for (const GlVersion& version : options.versions) {
+    for (const Version& version : options.versions) {
       if (!make_current(config, attributes_of(version, options))) continue;
       if (is_enough(current_driver())) return true;
       drop_context();
@@ -72,7 +72,7 @@ struct HeadlessContext::State {
     return false;
   }
 
-  static std::vector<EGLint> attributes_of(const GlVersion& version, const HeadlessOptions& options) {
+  static std::vector<EGLint> attributes_of(const Version& version, const HeadlessOptions& options) {
     std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
                                    version.major,
                                    EGL_CONTEXT_MINOR_VERSION,

@@ -10,7 +10,7 @@ namespace yuragi::viewer::gl {
 struct HeadlessOptions {
   bool is_software = false;   ///< drawn by the processor, even where there is graphics hardware
   bool has_messages = false;  ///< the driver checks more, for report_gl_errors(); slower on some
-  std::span<const GlVersion> versions = kVersionsToAskFor;  ///< to be asked for in this order
+  std::span<const Version> versions = kVersionsToAskFor;  ///< to be asked for in this order
 };
 
 /// A current OpenGL context that is_enough() and needs no display and no window: EGL without a surface, on the first

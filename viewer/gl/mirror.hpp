@@ -20,9 +20,9 @@ class Mirror {
 
  private:
   int width_px_, height_px_;
-  GlTexture color_;
-  GlRenderbuffer depth_;
-  GlFramebuffer framebuffer_;
+  Texture color_;
+  Renderbuffer depth_;
+  Framebuffer framebuffer_;
 };
 
 }  // namespace yuragi::viewer::gl

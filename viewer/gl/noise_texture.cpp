@@ -60,7 +60,7 @@ std::uint8_t byte_of(float value) {
 
 /// A tile of texels that `texel_at(tile, x, y)` makes, an array of `kChannels` values from 0 to 1 each.
 template <std::size_t kChannels, class TexelAt>
-GlTexture made_of_noise(GLint kept_as, GLenum format, TexelAt&& texel_at) {
+Texture made_of_noise(GLint kept_as, GLenum format, TexelAt&& texel_at) {
   const std::vector<float> tile = make_tile_values();
   std::vector<std::uint8_t> texels;
   texels.reserve(kChannels * tile.size());
@@ -87,13 +87,13 @@ float mean_at(const std::vector<float>& tile, std::size_t x, std::size_t y, std:
 
 }  // namespace
 
-GlTexture make_noise_texture() {
+Texture make_noise_texture() {
   return made_of_noise<1>(GL_R8, GL_RED, [](const std::vector<float>& tile, std::size_t x, std::size_t y) {
     return std::array{value_at(tile, x, y)};
   });
 }
 
-GlTexture make_turf_texture() {
+Texture make_turf_texture() {
   constexpr std::size_t kFiner = 8;
   constexpr std::size_t kBroad = 16;
   return made_of_noise<3>(GL_RGB8, GL_RGB, [](const std::vector<float>& tile, std::size_t x, std::size_t y) {
@@ -103,7 +103,7 @@ GlTexture make_turf_texture() {
   });
 }
 
-GlTexture make_relief_texture() {
+Texture make_relief_texture() {
   constexpr std::size_t kStep = 9;  // 0.035 of the side
   return made_of_noise<3>(GL_RGB8, GL_RGB, [](const std::vector<float>& tile, std::size_t x, std::size_t y) {
     const float here = value_at(tile, x, y);

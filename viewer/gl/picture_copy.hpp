@@ -17,7 +17,7 @@ class PictureCopy {
   GLuint texture() const { return texture_.name(); }
 
  private:
-  GlTexture texture_;
+  Texture texture_;
   GLint filter_;
   int width_px_ = 0;
   int height_px_ = 0;

@@ -13,7 +13,7 @@ int supported_samples(int wanted) {
   return std::clamp(wanted, 1, std::max(1, most));
 }
 
-void attach(GLenum attachment, const GlRenderbuffer& buffer, GLenum format, int samples, int width_px, int height_px) {
+void attach(GLenum attachment, const Renderbuffer& buffer, GLenum format, int samples, int width_px, int height_px) {
   glBindRenderbuffer(GL_RENDERBUFFER, buffer.name());
   glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples > 1 ? samples : 0, format, width_px, height_px);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer.name());

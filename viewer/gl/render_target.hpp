@@ -41,11 +41,11 @@ class RenderTarget {
   int samples_;
   int drawn_width_px_;
   int drawn_height_px_;
-  GlFramebuffer sampled_;
-  GlRenderbuffer sampled_color_;
-  GlRenderbuffer sampled_depth_;
-  GlFramebuffer resolved_;
-  GlRenderbuffer resolved_color_;
+  Framebuffer sampled_;
+  Renderbuffer sampled_color_;
+  Renderbuffer sampled_depth_;
+  Framebuffer resolved_;
+  Renderbuffer resolved_color_;
 };
 
 }  // namespace yuragi::viewer::gl

@@ -26,10 +26,10 @@ class ScreenDoor {
  private:
   void draw_on_open();
 
-  GlProgram program_;
+  Program program_;
   GLint opacity_place_ = -1;
   GLint number_place_ = -1;
-  GlVertexArray no_attributes_;
+  VertexArray no_attributes_;
   bool is_half_open_ = false;
 };
 

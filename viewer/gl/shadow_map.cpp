@@ -12,7 +12,7 @@ ShadowMap::ShadowMap(int texels) : texels_(texels) {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   // One texture, looked up in two ways: the share that is nearer than a depth, and the depth itself.
-  for (const GlSampler* sampler : {&compared_, &plain_}) {
+  for (const Sampler* sampler : {&compared_, &plain_}) {
     glSamplerParameteri(sampler->name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glSamplerParameteri(sampler->name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     const GLint filter = sampler == &compared_ ? GL_LINEAR : GL_NEAREST;

@@ -19,10 +19,10 @@ class ShadowMap {
 
  private:
   int texels_;
-  GlTexture depth_;
-  GlSampler compared_;
-  GlSampler plain_;
-  GlFramebuffer framebuffer_;
+  Texture depth_;
+  Sampler compared_;
+  Sampler plain_;
+  Framebuffer framebuffer_;
 };
 
 }  // namespace yuragi::viewer::gl

@@ -21,8 +21,8 @@ class StripIndices {
 
  private:
   struct Mesh {
-    GlBuffer indices;
-    GlVertexArray array;
+    Buffer indices;
+    VertexArray array;
   };
   std::map<std::size_t, Mesh> meshes_;  // by corners
 };

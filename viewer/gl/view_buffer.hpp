@@ -15,9 +15,9 @@ class ViewBuffer {
   void set(const light::Fires& fires);
 
  private:
-  GlBuffer view_;
-  GlBuffer light_;
-  GlBuffer fires_;
+  Buffer view_;
+  Buffer light_;
+  Buffer fires_;
 };
 
 }  // namespace yuragi::viewer::gl

@@ -7,7 +7,7 @@ namespace {
 
 constexpr GLsizei kFloorVertices = 5 * 6;
 
-void set_floor(const gl::GlProgram& program, const meshes::Floor& floor, const glm::vec3& through) {
+void set_floor(const gl::Program& program, const meshes::Floor& floor, const glm::vec3& through) {
   const auto place = [&](const char* name) { return glGetUniformLocation(program.name(), name); };
   glUseProgram(program.name());
   glUniform3f(place("middle_m"), floor.middle_m.x, floor.middle_m.y, floor.middle_m.z);

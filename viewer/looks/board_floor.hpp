@@ -26,8 +26,8 @@ class BoardFloor {
   }
 
  private:
-  gl::GlProgram program_, shade_program_;
-  gl::GlVertexArray no_attributes_;
+  gl::Program program_, shade_program_;
+  gl::VertexArray no_attributes_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -89,7 +89,7 @@ glm::vec3 light_through(const look::ClothLook& look) {
   return kThrough * 1.25F * paint * glm::sqrt(paint);
 }
 
-gl::GlProgram program_of(meshes::ClothStyle style) {
+gl::Program program_of(meshes::ClothStyle style) {
   switch (style) {
     case meshes::ClothStyle::kFlag:
       return gl::link_program("flag", gl::shaders::kClothVert, gl::shaders::kFlagFrag);

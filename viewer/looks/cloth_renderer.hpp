@@ -65,8 +65,8 @@ class ClothRenderer : public SceneRenderer {
   float wire_m_;  ///< how thick the rings of what holds it are
   std::optional<meshes::Floor> floor_;
   std::optional<BoardFloor> boards_;  ///< of the floor
-  gl::GlProgram program_;
-  std::optional<gl::GlTexture> picture_;
+  gl::Program program_;
+  std::optional<gl::Texture> picture_;
 };
 
 }  // namespace yuragi::viewer::looks

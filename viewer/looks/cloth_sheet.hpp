@@ -31,9 +31,9 @@ class ClothSheet {
   std::vector<float> bends_per_m_, rim_points_, rim_normals_;
   bool is_rim_there_ = false;  ///< for the present positions
   GLsizei index_count_ = 0;
-  gl::GlBuffer index_buffer_, point_buffer_, normal_buffer_, bend_buffer_, place_buffer_;
-  gl::GlBuffer rim_point_buffer_, rim_normal_buffer_, rim_place_buffer_;
-  gl::GlVertexArray array_, rim_array_;
+  gl::Buffer index_buffer_, point_buffer_, normal_buffer_, bend_buffer_, place_buffer_;
+  gl::Buffer rim_point_buffer_, rim_normal_buffer_, rim_place_buffer_;
+  gl::VertexArray array_, rim_array_;
 };
 
 }  // namespace yuragi::viewer::looks

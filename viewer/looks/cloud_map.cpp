@@ -82,7 +82,7 @@ void CloudMap::draw_missing(const meshes::Arc& bearings) {
   if (end > kStrips) draw_missing(0, std::min(end - kStrips, kStrips));  // around the map's edge
 }
 
-void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise, const meshes::View& view) {
+void CloudMap::advance(const light::Light& light, const gl::Texture& noise, const meshes::View& view) {
   const auto is_nearly = [](const Sky& a, const Sky& b, float tolerance) {
     return glm::distance(a.drift, b.drift) < 5.0F * tolerance && glm::distance(a.to_sun, b.to_sun) < 2.0F * tolerance &&
            std::abs(a.clouds_begin - b.clouds_begin) < tolerance;
@@ -122,7 +122,7 @@ void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise, co
   next_ = 3 - from_ - to_;
 }
 
-void CloudMap::bind(const gl::GlProgram& sky) const {
+void CloudMap::bind(const gl::Program& sky) const {
   const auto show = [&](GLint unit, const Map& map, const char* sampler, const char* drifted) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, map.texture.name());

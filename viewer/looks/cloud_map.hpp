@@ -25,10 +25,10 @@ class CloudMap {
   /// Goes on with the next map, or begins with a first one where there is none yet or the sky is another than at the
   /// last call. Then all that `view` and its mirrored one show is there. Binds another framebuffer. `noise`: the tile
   /// of viewer/gl/noise_texture.hpp.
-  void advance(const light::Light& light, const gl::GlTexture& noise, const meshes::View& view);
+  void advance(const light::Light& light, const gl::Texture& noise, const meshes::View& view);
 
   /// For `sky`, which is in use: the maps in view, and how far the clouds have drifted since.
-  void bind(const gl::GlProgram& sky) const;
+  void bind(const gl::Program& sky) const;
 
  private:
   /// What clouds depend on.
@@ -38,7 +38,7 @@ class CloudMap {
     glm::vec3 to_sun{0.0F, 1.0F, 0.0F};
   };
   struct Map {
-    gl::GlTexture texture;
+    gl::Texture texture;
     Sky sky;
   };
   static constexpr int kColumns = 2048;    // the shader has the same number
@@ -50,9 +50,9 @@ class CloudMap {
   void draw_missing(const meshes::Arc& bearings);
   void draw_columns(const Map& map, int first, int count);
 
-  gl::GlProgram program_;
-  gl::GlVertexArray no_attributes_;
-  gl::GlFramebuffer framebuffer_;
+  gl::Program program_;
+  gl::VertexArray no_attributes_;
+  gl::Framebuffer framebuffer_;
   std::array<Map, 3> maps_;
   std::size_t from_ = 0, to_ = 1, next_ = 2;  // two are in view, one is being drawn
   int drawn_ = 0;                             // columns of the next

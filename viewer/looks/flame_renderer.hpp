@@ -45,8 +45,8 @@ class FlameRenderer : public SceneRenderer {
   Moment moment_;
   meshes::FlameBowl bowl_;
   Solids bowl_solids_;
-  gl::GlTexture ramp_, noise_;
-  gl::GlVertexArray no_attributes_;
+  gl::Texture ramp_, noise_;
+  gl::VertexArray no_attributes_;
   float height_m_ = 1.0F, width_m_ = 1.0F;
 
   // Where the heat is, how much of it there is, and how much of that its light shows.
@@ -62,19 +62,19 @@ class FlameRenderer : public SceneRenderer {
   std::vector<float> streamed_heat_;
   double moved_at_s_ = -1e9;
   int steps_;
-  gl::GlProgram fire_program_, spark_program_;
-  gl::GlTexture gas_tile_, layer_rows_;
-  gl::GlBuffer hull_buffer_, hull_indices_, spark_buffer_;
-  gl::GlVertexArray hull_array_, spark_array_;
+  gl::Program fire_program_, spark_program_;
+  gl::Texture gas_tile_, layer_rows_;
+  gl::Buffer hull_buffer_, hull_indices_, spark_buffer_;
+  gl::VertexArray hull_array_, spark_array_;
   GLint risen_place_ = -1, fire_brightness_place_ = -1, spark_brightness_place_ = -1;
 
   // A sheet.
   std::optional<pose::PointPositions> points_;
   std::optional<GridSheet> sheet_;
-  gl::GlProgram sheet_program_;
+  gl::Program sheet_program_;
   GLint sheet_brightness_place_ = -1;
 
-  gl::GlProgram glow_program_, embers_program_, contact_program_, shade_program_;
+  gl::Program glow_program_, embers_program_, contact_program_, shade_program_;
   GLint glow_ball_place_ = -1, glow_light_place_ = -1;
   GLint shade_place_ = -1;
   GLint embers_brightness_place_ = -1, embers_breath_place_ = -1;

@@ -23,7 +23,7 @@ GLint hairs_of(look::Quality quality) {
   return quality == look::Quality::kMedium ? 6 : 10;
 }
 
-void set_body(const gl::GlProgram& program, const meshes::Body& body) {
+void set_body(const gl::Program& program, const meshes::Body& body) {
   glUseProgram(program.name());
   glUniform3f(glGetUniformLocation(program.name(), "body_middle_m"), body.middle_m.x, body.middle_m.y, body.middle_m.z);
   glUniformMatrix3fv(glGetUniformLocation(program.name(), "body_shape"), 1, GL_FALSE, &body.shape[0][0]);

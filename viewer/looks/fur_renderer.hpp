@@ -38,20 +38,20 @@ class FurRenderer : public SceneRenderer {
   meshes::Body body_;
   StrandRibbons ribbons_;
   meshes::Partings partings_;
-  gl::GlProgram hair_;
-  gl::GlProgram skin_;
+  gl::Program hair_;
+  gl::Program skin_;
   GLsizei skin_count_ = 0;
-  gl::GlTexture noise_;
-  gl::GlVertexArray skin_array_;
-  gl::GlBuffer skin_buffer_, skin_indices_;
+  gl::Texture noise_;
+  gl::VertexArray skin_array_;
+  gl::Buffer skin_buffer_, skin_indices_;
 
   std::optional<meshes::Bounds> limb_bounds_;
   GLsizei limb_count_ = 0, limb_hair_count_ = 0;
   float limb_hair_m_ = 0.0F;
-  gl::GlProgram limb_;
+  gl::Program limb_;
   GLint is_hair_ = -1, wider_ = -1;
-  gl::GlVertexArray limb_array_;
-  gl::GlBuffer limb_buffer_, limb_indices_;
+  gl::VertexArray limb_array_;
+  gl::Buffer limb_buffer_, limb_indices_;
 };
 
 }  // namespace yuragi::viewer::looks

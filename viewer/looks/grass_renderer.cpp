@@ -51,7 +51,7 @@ void GrassRenderer::draw(const meshes::View& view) {
   glUseProgram(program_.name());
   glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
-  const auto bind = [](GLint unit, GLenum format, const gl::GlTexture& texture, const gl::GlBuffer& buffer) {
+  const auto bind = [](GLint unit, GLenum format, const gl::Texture& texture, const gl::Buffer& buffer) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_BUFFER, texture.name());
     glTexBuffer(GL_TEXTURE_BUFFER, format, buffer.name());

@@ -26,11 +26,11 @@ class GrassRenderer : public SceneRenderer {
   meshes::Thinning thinning_;
   meshes::StrandTiles tiles_;
   const pose::StrandPose* latest_ = nullptr;  ///< of the picture being drawn
-  gl::GlProgram program_;
-  gl::GlVertexArray array_;
-  gl::GlBuffer blade_buffer_, bend_buffer_, block_buffer_;
-  gl::GlTexture blade_texture_, bend_texture_, block_texture_;
-  std::vector<gl::GlBuffer> triangles_;  ///< of each level of detail
+  gl::Program program_;
+  gl::VertexArray array_;
+  gl::Buffer blade_buffer_, bend_buffer_, block_buffer_;
+  gl::Texture blade_texture_, bend_texture_, block_texture_;
+  std::vector<gl::Buffer> triangles_;  ///< of each level of detail
   std::vector<GLsizei> counts_;
   std::vector<const void*> offsets_;
   std::vector<GLint> first_corners_;

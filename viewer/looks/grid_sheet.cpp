@@ -2,7 +2,7 @@
 
 namespace yuragi::viewer::looks {
 
-void describe_arrays(const gl::GlBuffer& buffer, GLuint first, GLuint count, std::size_t size) {
+void describe_arrays(const gl::Buffer& buffer, GLuint first, GLuint count, std::size_t size) {
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
   for (GLuint i = 0; i < count; ++i) {
     // OpenGL takes an offset in a buffer as a pointer.

@@ -8,7 +8,7 @@
 namespace yuragi::viewer::looks {
 
 /// Of the vertex array that is bound: `buffer` holds one array of `size` numbers for each attribute from `first` on.
-void describe_arrays(const gl::GlBuffer& buffer, GLuint first, GLuint count, std::size_t size);
+void describe_arrays(const gl::Buffer& buffer, GLuint first, GLuint count, std::size_t size);
 
 /// The triangles of a surface on the GPU, with smooth normals. Needs a current context.
 ///
@@ -36,11 +36,11 @@ class GridSheet {
   meshes::GridLayout layout_;
   std::vector<float> normals_;
   GLsizei index_count_ = 0;
-  gl::GlBuffer index_buffer_;
-  gl::GlBuffer point_buffer_;
-  gl::GlBuffer normal_buffer_;
-  gl::GlBuffer level_buffer_;
-  gl::GlVertexArray array_;
+  gl::Buffer index_buffer_;
+  gl::Buffer point_buffer_;
+  gl::Buffer normal_buffer_;
+  gl::Buffer level_buffer_;
+  gl::VertexArray array_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -14,7 +14,7 @@ namespace {
 
 // Unit 0 is for what a renderer has of its own.
 
-void bind_texture(GLint unit, const gl::GlTexture& texture) {
+void bind_texture(GLint unit, const gl::Texture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, texture.name());
 }
@@ -34,7 +34,7 @@ bool is_same(const meshes::Standing& a, const meshes::Standing& b) {
 }  // namespace
 
 GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()), turf_(gl::make_turf_texture()) {
-  for (const gl::GlTexture* texture : {&bends_, &growth_}) {
+  for (const gl::Texture* texture : {&bends_, &growth_}) {
     glBindTexture(GL_TEXTURE_2D, texture->name());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -49,7 +49,7 @@ GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()), turf_(gl::make_turf
   move_to({}, nullptr, nullptr, 0.0F);
 }
 
-void GroundMaps::set_samplers(const gl::GlProgram& program) {
+void GroundMaps::set_samplers(const gl::Program& program) {
   gl::set_sampler(program, "noise_tile", gl::kNoiseUnit);
   gl::set_sampler(program, "turf_tile", gl::kTurfUnit);
   gl::set_sampler(program, "bends", gl::kBendsUnit);

@@ -16,7 +16,7 @@ class GroundMaps {
   GroundMaps();
 
   /// Tells a program where its samplers find them.
-  static void set_samplers(const gl::GlProgram& program);
+  static void set_samplers(const gl::Program& program);
 
   /// What stands on the ground, and how tall grass may grow anywhere, 0 to 1. The map is made anew where that has
   /// changed.
@@ -37,8 +37,8 @@ class GroundMaps {
   void bind(const meshes::Stand& stand, float tall, std::size_t door);
 
  private:
-  gl::GlTexture noise_, turf_, bends_, growth_;
-  gl::GlBuffer block_;
+  gl::Texture noise_, turf_, bends_, growth_;
+  gl::Buffer block_;
   meshes::Ground ground_;
   meshes::GrowthMap map_;
   std::vector<meshes::Standing> standing_;

@@ -10,8 +10,8 @@ constexpr float kMaxAnisotropy = 8.0F;
 
 }  // namespace
 
-gl::GlTexture image_texture(const look::Image& image, GLint wrap) {
-  gl::GlTexture texture;
+gl::Texture image_texture(const look::Image& image, GLint wrap) {
+  gl::Texture texture;
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, texture.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

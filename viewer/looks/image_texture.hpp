@@ -7,6 +7,6 @@ namespace yuragi::viewer::looks {
 
 /// A picture as a texture of light (sRGB), with smaller ones for the distance. `wrap`: GL_CLAMP_TO_EDGE or GL_REPEAT.
 /// Binds texture unit 0. Needs a current context.
-gl::GlTexture image_texture(const look::Image& image, GLint wrap);
+gl::Texture image_texture(const look::Image& image, GLint wrap);
 
 }  // namespace yuragi::viewer::looks

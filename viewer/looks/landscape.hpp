@@ -44,22 +44,22 @@ class Landscape {
 
   look::Quality quality_ = look::Quality::kLow;
   light::Light light_;
-  gl::GlTexture noise_, relief_;
+  gl::Texture noise_, relief_;
   CloudMap clouds_;
-  gl::GlProgram ground_;
+  gl::Program ground_;
   std::shared_ptr<const look::Image> image_;  // on the ground
-  std::optional<gl::GlTexture> image_texture_;
+  std::optional<gl::Texture> image_texture_;
   float image_share_ = 0.0F;
-  gl::GlProgram hills_;
+  gl::Program hills_;
   GLint range_place_ = -1, every_place_ = -1;
   struct Range {
-    gl::GlBuffer corners;
-    gl::GlTexture texture;
+    gl::Buffer corners;
+    gl::Texture texture;
   };
   std::array<Range, meshes::kFarRanges.size()> ranges_;
-  gl::GlProgram sky_;
+  gl::Program sky_;
   std::optional<SmallSky> small_sky_{std::in_place};  // with low quality
-  gl::GlVertexArray no_attributes_;
+  gl::VertexArray no_attributes_;
 };
 
 }  // namespace yuragi::viewer::looks

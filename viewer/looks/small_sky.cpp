@@ -65,7 +65,7 @@ SmallSky::SmallSky()
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-void SmallSky::make(const meshes::View& view, const CloudMap& clouds, const gl::GlTexture& noise, int width_px,
+void SmallSky::make(const meshes::View& view, const CloudMap& clouds, const gl::Texture& noise, int width_px,
                     int height_px) {
   picture_px_ = {width_px, height_px};
   const glm::ivec2 size_px = (picture_px_ + kPixel_px - 1) / kPixel_px;
@@ -101,7 +101,7 @@ void SmallSky::make(const meshes::View& view, const CloudMap& clouds, const gl::
 
 void SmallSky::draw(const light::Light& light, const meshes::View& view) {
   glBindVertexArray(no_attributes_.name());
-  const auto draw = [&](const gl::GlProgram& program) {
+  const auto draw = [&](const gl::Program& program) {
     glUseProgram(program.name());
     const glm::vec2 pixel = 1.0F / glm::vec2(picture_px_);
     glUniform2f(glGetUniformLocation(program.name(), "pixel"), pixel.x, pixel.y);

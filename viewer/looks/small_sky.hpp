@@ -18,16 +18,16 @@ class SmallSky {
 
   /// Draws what of it can be above the ground in a picture of this size, whose View is bound. Binds another
   /// framebuffer. `noise`: the tile of viewer/gl/noise_texture.hpp.
-  void make(const meshes::View& view, const CloudMap& clouds, const gl::GlTexture& noise, int width_px, int height_px);
+  void make(const meshes::View& view, const CloudMap& clouds, const gl::Texture& noise, int width_px, int height_px);
 
   /// Behind everything in the picture that it was made for. On unit 0 is the same noise.
   void draw(const light::Light& light, const meshes::View& view);
 
  private:
-  gl::GlProgram small_, wide_, wide_heavens_;
-  gl::GlVertexArray no_attributes_;
-  gl::GlTexture texture_;
-  gl::GlFramebuffer framebuffer_;
+  gl::Program small_, wide_, wide_heavens_;
+  gl::VertexArray no_attributes_;
+  gl::Texture texture_;
+  gl::Framebuffer framebuffer_;
   glm::ivec2 size_px_{0}, picture_px_{0};
 };
 

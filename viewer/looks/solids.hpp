@@ -24,11 +24,11 @@ class Solids {
  private:
   GLsizei index_count_;  ///< with those of the rings, which are the last
   GLsizei ring_index_count_;
-  gl::GlProgram program_;
+  gl::Program program_;
   GLint axis_place_, turn_place_;
-  gl::GlBuffer vertex_buffer_;
-  gl::GlBuffer index_buffer_;
-  gl::GlVertexArray array_;
+  gl::Buffer vertex_buffer_;
+  gl::Buffer index_buffer_;
+  gl::VertexArray array_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -16,7 +16,7 @@ void StrandRibbons::move_to(const pose::StrandPose& pose) {
   gl::stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(joints_).data()));
 }
 
-void StrandRibbons::draw(const gl::GlProgram& program, const meshes::View& view) {
+void StrandRibbons::draw(const gl::Program& program, const meshes::View& view) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), "links"), static_cast<GLint>(strands_->links_per_strand));
   const GLint copies_place = glGetUniformLocation(program.name(), "copies");

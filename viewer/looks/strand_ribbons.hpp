@@ -26,17 +26,17 @@ class StrandRibbons {
   /// meshes::Partings', of that pose.
   void set_openings(std::span<const float> openings) { sorter_.set_openings(openings); }
   /// Draws what is in view, near ones first, with `program`.
-  void draw(const gl::GlProgram& program, const meshes::View& view);
+  void draw(const gl::Program& program, const meshes::View& view);
 
  private:
   const pose::StrandSkeleton* strands_;
   GLint copies_;
   meshes::BladeSorter sorter_;
   pose::JointPositions joints_;
-  gl::GlBuffer joint_buffer_;
-  gl::GlTexture joint_texture_;
-  gl::GlBuffer blade_buffer_;
-  gl::GlTexture blade_texture_;
+  gl::Buffer joint_buffer_;
+  gl::Texture joint_texture_;
+  gl::Buffer blade_buffer_;
+  gl::Texture blade_texture_;
   gl::StripIndices strips_;
 };
 

@@ -30,11 +30,11 @@ class Sward {
   meshes::Thinning thinning_;
   std::size_t blades_per_tile_;
   meshes::SwardTiles tiles_;
-  gl::GlProgram program_;
-  gl::GlVertexArray array_;
-  gl::GlBuffer blade_buffer_, tile_buffer_;
-  gl::GlTexture blade_texture_, tile_texture_;
-  std::array<gl::GlBuffer, meshes::SwardTiles::kLevels> triangles_;
+  gl::Program program_;
+  gl::VertexArray array_;
+  gl::Buffer blade_buffer_, tile_buffer_;
+  gl::Texture blade_texture_, tile_texture_;
+  std::array<gl::Buffer, meshes::SwardTiles::kLevels> triangles_;
   std::vector<GLsizei> counts_;
   std::vector<const void*> offsets_;
   std::vector<GLint> first_corners_;

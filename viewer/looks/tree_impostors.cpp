@@ -18,7 +18,7 @@ const void* offset_in_tree(std::size_t offset) {
   return reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr)
 }
 
-void make_atlas(GLint unit, const gl::GlTexture& texture) {
+void make_atlas(GLint unit, const gl::Texture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, texture.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kWidth_px, kHeight_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
@@ -33,7 +33,7 @@ void make_atlas(GLint unit, const gl::GlTexture& texture) {
 
 }  // namespace
 
-void LeafColors::set(const gl::GlProgram& program) const {
+void LeafColors::set(const gl::Program& program) const {
   glUniform1i(glGetUniformLocation(program.name(), "has_palette"), has_palette ? 1 : 0);
   glUniform1f(glGetUniformLocation(program.name(), "turns_red"), turns_red);
   glUniform1f(glGetUniformLocation(program.name(), "silver"), silver);
@@ -51,7 +51,7 @@ TreeImpostors::TreeImpostors(const meshes::trees::ImpostorBox& box, const glm::v
   gl::set_sampler(program_, "looks", gl::kImpostorUnit);
   gl::set_sampler(program_, "facing", gl::kImpostorFacingUnit);
 
-  using Tree = meshes::trees::TreeImpostor;
+  using Tree = meshes::trees::Impostor;
   glBindVertexArray(array_.name());
   glBindBuffer(GL_ARRAY_BUFFER, trees_.name());
   for (GLuint attribute = 0; attribute < 3; ++attribute) {
@@ -101,14 +101,14 @@ meshes::View TreeImpostors::begin_picture(gl::ViewBuffer& views, std::size_t sid
 void TreeImpostors::end() {
   canvas_.reset();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  for (const gl::GlTexture* texture : {&looks_, &facing_}) {
+  for (const gl::Texture* texture : {&looks_, &facing_}) {
     glBindTexture(GL_TEXTURE_2D, texture->name());
     glGenerateMipmap(GL_TEXTURE_2D);
   }
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void TreeImpostors::draw(std::span<const meshes::trees::TreeImpostor> trees, float blown, bool is_by_sun) {
+void TreeImpostors::draw(std::span<const meshes::trees::Impostor> trees, float blown, bool is_by_sun) {
   if (trees.empty()) return;
   glActiveTexture(GL_TEXTURE0 + gl::kImpostorUnit);
   glBindTexture(GL_TEXTURE_2D, looks_.name());

@@ -15,7 +15,7 @@ struct LeafColors {
   bool has_palette = false;  ///< they take the palette's
   float turns_red = 0.0F;    ///< how far they turn in autumn, 0 to 1
   float silver = 0.0F;       ///< how pale their lower faces are, 0 to 1
-  void set(const gl::GlProgram& program) const;
+  void set(const gl::Program& program) const;
 };
 
 /// The pictures of a tree from all sides, and the sheets far away that show them: one draw call for a whole grove. The
@@ -38,7 +38,7 @@ class TreeImpostors {
 
   /// Draws sheets, which face the eye or, for their shadows, the sun.
   /// `blown`: how far the wind has turned their sprays from rest (SprayPlace), on average.
-  void draw(std::span<const meshes::trees::TreeImpostor> trees, float blown, bool is_by_sun);
+  void draw(std::span<const meshes::trees::Impostor> trees, float blown, bool is_by_sun);
 
  private:
   void begin();
@@ -49,16 +49,16 @@ class TreeImpostors {
   glm::vec3 to_middle_m_;
   meshes::trees::SprayShape::Kind kind_;
   LeafColors colors_;
-  gl::GlTexture looks_, facing_;
+  gl::Texture looks_, facing_;
   /// What the pictures are drawn into, besides these two.
   struct Canvas {
-    gl::GlRenderbuffer depth;
-    gl::GlFramebuffer framebuffer;
+    gl::Renderbuffer depth;
+    gl::Framebuffer framebuffer;
   };
   std::optional<Canvas> canvas_;  // while they are made
-  gl::GlBuffer trees_;
-  gl::GlVertexArray array_;
-  gl::GlProgram program_;
+  gl::Buffer trees_;
+  gl::VertexArray array_;
+  gl::Program program_;
 };
 
 }  // namespace yuragi::viewer::looks

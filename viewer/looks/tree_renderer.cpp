@@ -65,7 +65,7 @@ const void* offset_of(std::size_t offset) {
 }
 
 template <class T>
-void fill(GLenum target, const gl::GlBuffer& buffer, const std::vector<T>& content) {
+void fill(GLenum target, const gl::Buffer& buffer, const std::vector<T>& content) {
   glBindBuffer(target, buffer.name());
   glBufferData(target, static_cast<GLsizeiptr>(content.size() * sizeof(T)), content.data(), GL_STATIC_DRAW);
 }
@@ -79,7 +79,7 @@ void enable_instances(GLuint attributes) {
 
 /// Lets the bound array read branches of the bound buffer from the `first` on.
 void describe_parts(std::size_t first) {
-  using Part = meshes::trees::TreePart;
+  using Part = meshes::trees::Part;
   const std::size_t begin = first * sizeof(Part);
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Part), offset_of(begin + offsetof(Part, root_m)));
   glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(Part), offset_of(begin + offsetof(Part, tint)));
@@ -116,13 +116,13 @@ meshes::Bounds bounds_without_grove(const pose::TreeSkeleton& tree) {
 }
 
 /// Where the trees of a skeleton stand: the streamed one, and its copies.
-std::vector<meshes::trees::TreePlace> places_of(const pose::TreeSkeleton& tree) {
-  meshes::trees::TreePlace own;
+std::vector<meshes::trees::Place> places_of(const pose::TreeSkeleton& tree) {
+  meshes::trees::Place own;
   if (!tree.levels.empty() && tree.levels[0].strands.strand_count > 0) {
     const pose::StrandSkeleton& trunk = tree.levels[0].strands;
     own.from_m = own.to_m = glm::vec3(trunk.root_x_m[0], trunk.root_y_m[0], trunk.root_z_m[0]);
   }
-  std::vector<meshes::trees::TreePlace> places{own};
+  std::vector<meshes::trees::Place> places{own};
   for (std::size_t i = 0; i < tree.copies.x_m.size(); ++i) {
     places.push_back({.from_m = own.from_m,
                       .to_m = {tree.copies.x_m[i], own.from_m.y, tree.copies.z_m[i]},
@@ -170,15 +170,15 @@ bool fits(const pose::TreePose& pose, const pose::TreeSkeleton& tree) {
   });
 }
 
-void set_int(const gl::GlProgram& program, const char* name, std::size_t value) {
+void set_int(const gl::Program& program, const char* name, std::size_t value) {
   glUniform1i(glGetUniformLocation(program.name(), name), static_cast<GLint>(value));
 }
 
-void set_vec3(const gl::GlProgram& program, const char* name, const glm::vec3& value) {
+void set_vec3(const gl::Program& program, const char* name, const glm::vec3& value) {
   glUniform3f(glGetUniformLocation(program.name(), name), value.x, value.y, value.z);
 }
 
-void set_place(const gl::GlProgram& program, const meshes::trees::TreePlace& place) {
+void set_place(const gl::Program& program, const meshes::trees::Place& place) {
   set_vec3(program, "place_from_m", place.from_m);
   glUniform4f(glGetUniformLocation(program.name(), "place_to_m"), place.to_m.x, place.to_m.y, place.to_m.z,
               place.scale);
@@ -214,7 +214,7 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
     }
   }
   gl::set_sampler(bark_, "joints", 0);
-  for (const meshes::trees::TreePlace& place : places_of(tree)) add_place(place);
+  for (const meshes::trees::Place& place : places_of(tree)) add_place(place);
   box_ = meshes::trees::impostor_box(bounds_without_grove(tree));
   far_trees_.reserve(1 + tree.copies.x_m.size());
   if (woods_.empty()) impostor_px_ = 0.0F;
@@ -242,7 +242,7 @@ float TreeRenderer::shown_share(const Foliage& foliage, float hanging) const {
   return foliage.color == tree_->foliage ? hanging : 1.0F - glm::smoothstep(0.0F, kTwigsSeenBelow, hanging);
 }
 
-void TreeRenderer::add_place(const meshes::trees::TreePlace& place) {
+void TreeRenderer::add_place(const meshes::trees::Place& place) {
   constexpr float kAlike = 1e-4F;
   const auto is_alike = [&](const std::unique_ptr<Alike>& alike) {
     return std::abs(alike->cosine - place.cosine) < kAlike && std::abs(alike->sine - place.sine) < kAlike;
@@ -256,7 +256,7 @@ void TreeRenderer::add_place(const meshes::trees::TreePlace& place) {
 }
 
 /// A tree at rest.
-std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::trees::TreePlace& place) const {
+std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::trees::Place& place) const {
   auto tree = std::make_unique<Alike>(Alike{.cosine = place.cosine,
                                             .sine = place.sine,
                                             .places = {place},
@@ -354,7 +354,7 @@ void TreeRenderer::move(Alike& alike, float hanging_leaves) {
   }
 }
 
-float TreeRenderer::impostor_share(const meshes::View& view, const meshes::trees::TreePlace& place) const {
+float TreeRenderer::impostor_share(const meshes::View& view, const meshes::trees::Place& place) const {
   const float distance_m = std::max(glm::distance(glm::vec3(view.eye_m), place.moved(box_.middle_m)), 0.1F);
   const float height = place.scale * 2.0F * box_.half_height_m / distance_m;
   return std::min(meshes::trees::impostor_share(height / view.eye_m.w, impostor_px_),
@@ -373,10 +373,10 @@ void TreeRenderer::prepare(const meshes::View& view, gl::ViewBuffer& views) {
 
 /// The pictures of the tree at rest with these of its leaves.
 std::unique_ptr<TreeImpostors> TreeRenderer::pictures_of(gl::ViewBuffer& views, float hanging) {
-  const gl::GlProgram bark = gl::link_program("bark's picture", gl::shaders::kBarkVert, gl::shaders::kImpostorLookFrag);
-  const gl::GlProgram leaf = gl::link_program("leaf's picture", gl::shaders::kLeafVert, gl::shaders::kImpostorLookFrag);
+  const gl::Program bark = gl::link_program("bark's picture", gl::shaders::kBarkVert, gl::shaders::kImpostorLookFrag);
+  const gl::Program leaf = gl::link_program("leaf's picture", gl::shaders::kLeafVert, gl::shaders::kImpostorLookFrag);
   gl::set_sampler(bark, "joints", 0);
-  const meshes::trees::TreePlace& own = trees_.front()->places.front();
+  const meshes::trees::Place& own = trees_.front()->places.front();
   const std::unique_ptr<Alike> at_rest = tree_at(own);
   move(*at_rest, hanging);
   const bool is_bare = foliages_.empty() || hanging == 0.0F;
@@ -402,16 +402,16 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::Spray
   const auto planes = side_planes(view);
   const float radius_m = std::hypot(box_.half_width_m, box_.half_height_m);
   // Gusts come to the one that stands the farthest upwind first.
-  const auto downwind_m = [&](const meshes::trees::TreePlace& place) {
+  const auto downwind_m = [&](const meshes::trees::Place& place) {
     return sway_.downwind_m({place.to_m.x - place.from_m.x, place.to_m.z - place.from_m.z});
   };
   float first_m = 0.0F;
   for (const auto& alike : trees_) {
-    for (const meshes::trees::TreePlace& place : alike->places) first_m = std::min(first_m, downwind_m(place));
+    for (const meshes::trees::Place& place : alike->places) first_m = std::min(first_m, downwind_m(place));
   }
   far_trees_.clear();
   for (const auto& alike : trees_) {
-    for (const meshes::trees::TreePlace& place : alike->places) {
+    for (const meshes::trees::Place& place : alike->places) {
       const float share = impostors_ ? impostor_share(view, place) : 0.0F;
       const float hanging = loses_leaves(*tree_) ? hanging_of(place.chance(), moment_.hanging_leaves) : 1.0F;
       if (share < 1.0F) draw_tree({bark_, leaf_, colors_}, view, detail, ring_px, *alike, place, hanging);
@@ -436,14 +436,14 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::Spray
   // Behind what is left of the leaves; nothing of those that have enough.
   const auto& twigs = *foliages_.back();
   std::erase_if(far_trees_,
-                [&](const meshes::trees::TreeImpostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });
-  for (meshes::trees::TreeImpostor& tree : far_trees_) tree.hanging = shown_share(twigs, tree.hanging);
+                [&](const meshes::trees::Impostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });
+  for (meshes::trees::Impostor& tree : far_trees_) tree.hanging = shown_share(twigs, tree.hanging);
   bare_impostors_->draw(far_trees_, 0.0F, is_shadow);
 }
 
 void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view,
                              const meshes::trees::SprayDetail& detail, float ring_px, Alike& alike,
-                             const meshes::trees::TreePlace& place, float hanging) {
+                             const meshes::trees::Place& place, float hanging) {
   if (!alike.is_moved) move(alike, moment_.hanging_leaves);
   // The light in a tree that was bare before, or blossoms, does not change.
   const float leafy = loses_leaves(*tree_) ? hanging : 1.0F;
@@ -481,7 +481,7 @@ void TreeRenderer::draw_light() {
   glUniform1f(glGetUniformLocation(contact_.name(), "radius_m"), tree_->levels[0].base_radius_m[0]);
   glBindVertexArray(woods_[0]->array.name());
   for (const auto& alike : trees_) {
-    for (const meshes::trees::TreePlace& place : alike->places) {
+    for (const meshes::trees::Place& place : alike->places) {
       set_place(contact_, place);
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
@@ -491,8 +491,8 @@ void TreeRenderer::draw_light() {
   glDisable(GL_BLEND);
 }
 
-void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood,
-                                 const meshes::trees::Branches& branches, const meshes::trees::TreePlace& place) {
+void TreeRenderer::draw_branches(const gl::Program& program, const Wood& wood, const meshes::trees::Branches& branches,
+                                 const meshes::trees::Place& place) {
   if (branches.parts().empty()) return;
   glUseProgram(program.name());
   set_place(program, place);
@@ -514,8 +514,7 @@ void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood,
   }
 }
 
-void TreeRenderer::draw_sprays(const gl::GlProgram& program, const Foliage& foliage,
-                               const meshes::trees::Crown& crown) {
+void TreeRenderer::draw_sprays(const gl::Program& program, const Foliage& foliage, const meshes::trees::Crown& crown) {
   if (crown.places().empty()) return;
   glUseProgram(program.name());
   set_int(program, "kind", static_cast<std::size_t>(foliage.shape.kind));

@@ -35,8 +35,8 @@ class TreeRenderer : public SceneRenderer {
  private:
   /// The programs that draw a tree: as it is seen, or as its impostors' pictures show it.
   struct Programs {
-    const gl::GlProgram& bark;
-    const gl::GlProgram& leaf;
+    const gl::Program& bark;
+    const gl::Program& leaf;
     LeafColors colors;
     float thinnest_px = 0.11F;  // half as wide are twigs at least
   };
@@ -44,16 +44,16 @@ class TreeRenderer : public SceneRenderer {
   /// A level of wood.
   struct Wood {
     std::size_t level = 0;
-    gl::GlBuffer part_buffer = {};
-    std::array<gl::GlBuffer, meshes::trees::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
-    gl::GlVertexArray array = {};
+    gl::Buffer part_buffer = {};
+    std::array<gl::Buffer, meshes::trees::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
+    gl::VertexArray array = {};
   };
 
   /// A spray's mesh on the GPU.
   struct SprayOnGpu {
-    gl::GlBuffer corner_buffer;
-    gl::GlBuffer index_buffer;
-    gl::GlVertexArray array;
+    gl::Buffer corner_buffer;
+    gl::Buffer index_buffer;
+    gl::VertexArray array;
     std::size_t stalk_indices = 0;
     std::size_t leaf_indices = 0;
   };
@@ -63,7 +63,7 @@ class TreeRenderer : public SceneRenderer {
     std::size_t level = 0;
     pose::FoliageColor color = pose::FoliageColor::kGreen;
     meshes::trees::SprayShape shape = {};
-    gl::GlBuffer place_buffer = {};
+    gl::Buffer place_buffer = {};
     std::array<SprayOnGpu, 3> sprays = {};  // by SprayKind
   };
 
@@ -71,31 +71,31 @@ class TreeRenderer : public SceneRenderer {
   struct Alike {
     float cosine = 1.0F;
     float sine = 0.0F;
-    std::vector<meshes::trees::TreePlace> places;
+    std::vector<meshes::trees::Place> places;
     pose::TreePose bends;   // turned back
     bool is_moved = false;  // what is below has them
     pose::TreeJoints joints;
     std::vector<meshes::trees::Branches> branches;  // of woods_
     std::vector<meshes::trees::Crown> crowns;       // of foliages_
-    gl::GlBuffer joint_buffer = {};
-    gl::GlTexture joint_texture = {};
+    gl::Buffer joint_buffer = {};
+    gl::Texture joint_texture = {};
   };
 
-  void add_place(const meshes::trees::TreePlace& place);
-  std::unique_ptr<Alike> tree_at(const meshes::trees::TreePlace& place) const;
+  void add_place(const meshes::trees::Place& place);
+  std::unique_ptr<Alike> tree_at(const meshes::trees::Place& place) const;
   static void turn_back(Alike& alike, const pose::TreePose& bends);
   void move(Alike& alike, float hanging_leaves);
-  float impostor_share(const meshes::View& view, const meshes::trees::TreePlace& place) const;
+  float impostor_share(const meshes::View& view, const meshes::trees::Place& place) const;
   glm::vec3 middle_m(const Alike& alike) const;
   static void make_spray(SprayOnGpu& spray, const meshes::trees::SprayMesh& mesh);
   void draw_all(const meshes::View& view, const meshes::trees::SprayDetail& detail, float ring_px, bool is_shadow);
   void draw_tree(const Programs& programs, const meshes::View& view, const meshes::trees::SprayDetail& detail,
-                 float ring_px, Alike& alike, const meshes::trees::TreePlace& place, float hanging);
-  void draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::trees::Branches& branches,
-                     const meshes::trees::TreePlace& place);
+                 float ring_px, Alike& alike, const meshes::trees::Place& place, float hanging);
+  void draw_branches(const gl::Program& program, const Wood& wood, const meshes::trees::Branches& branches,
+                     const meshes::trees::Place& place);
   void add_foliage(std::size_t level, pose::FoliageColor color);
   float shown_share(const Foliage& foliage, float hanging) const;
-  static void draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::trees::Crown& crown);
+  static void draw_sprays(const gl::Program& program, const Foliage& foliage, const meshes::trees::Crown& crown);
   std::unique_ptr<TreeImpostors> pictures_of(gl::ViewBuffer& views, float hanging);
 
   const pose::TreeSkeleton* tree_;
@@ -106,17 +106,17 @@ class TreeRenderer : public SceneRenderer {
   float ring_px_;
   float impostor_px_;
   LeafColors colors_;
-  gl::GlProgram bark_;
-  gl::GlProgram leaf_;
-  gl::GlProgram contact_;
+  gl::Program bark_;
+  gl::Program leaf_;
+  gl::Program contact_;
   std::vector<std::unique_ptr<Alike>> trees_;  // the streamed one is the first of the first
   Moment moment_;
   meshes::trees::ImpostorBox box_;
   glm::vec3 middle_at_rest_m_{0.0F};  // of the tips of the thinnest wood
   meshes::SwayHistory sway_;
-  std::unique_ptr<TreeImpostors> impostors_;            // made when first needed
-  std::unique_ptr<TreeImpostors> bare_impostors_;       // of a tree that has lost its leaves
-  std::vector<meshes::trees::TreeImpostor> far_trees_;  // of a picture
+  std::unique_ptr<TreeImpostors> impostors_;        // made when first needed
+  std::unique_ptr<TreeImpostors> bare_impostors_;   // of a tree that has lost its leaves
+  std::vector<meshes::trees::Impostor> far_trees_;  // of a picture
 };
 
 }  // namespace yuragi::viewer::looks

@@ -44,7 +44,7 @@ void describe(GLuint attribute, GLint numbers, GLsizei stride, std::size_t offse
 }
 
 template <class T>
-void fill(GLenum target, const gl::GlBuffer& buffer, const std::vector<T>& content) {
+void fill(GLenum target, const gl::Buffer& buffer, const std::vector<T>& content) {
   glBindBuffer(target, buffer.name());
   glBufferData(target, static_cast<GLsizeiptr>(content.size() * sizeof(T)), content.data(), GL_STATIC_DRAW);
 }
@@ -68,7 +68,7 @@ WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface, look::Quality
       ripples_(gl::make_ripple_texture()),
       bed_texels_(quality == look::Quality::kLow ? kLowBedTexels : kBedTexels),
       cell_px_(quality == look::Quality::kLow ? kLowCell_px : kCell_px) {
-  for (const gl::GlProgram* program : {&water_, &bed_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
+  for (const gl::Program* program : {&water_, &bed_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
   if (!shore_.is_pond()) return;
   make_sheet();
   make_memory();
@@ -129,7 +129,7 @@ void WaterRenderer::make_sheet() {
   const glm::vec2 texels_per_m =
       static_cast<float>(bed_texels_) * glm::vec2(glm::length(to_parts[0]), glm::length(to_parts[1]));
   glUniform1f(glGetUniformLocation(water_.name(), "bed_lod"), std::log2(std::max(texels_per_m.x, texels_per_m.y)));
-  for (const gl::GlProgram* program : {&water_, &bed_}) {
+  for (const gl::Program* program : {&water_, &bed_}) {
     glUseProgram(program->name());
     glUniform4f(glGetUniformLocation(program->name(), "grid_place"), corner_m.x, corner_m.y,
                 std::min(texel_m.x, texel_m.y), *mirror_m());
@@ -229,7 +229,7 @@ void WaterRenderer::draw_bed() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, bed_texels_, bed_texels_, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  const gl::GlFramebuffer canvas;
+  const gl::Framebuffer canvas;
   glBindFramebuffer(GL_FRAMEBUFFER, canvas.name());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, bed_texture_.name(), 0);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {

@@ -30,8 +30,8 @@ class WaterRenderer : public SceneRenderer {
  private:
   /// The water's surface at one level of detail: triangles of its points.
   struct Sheet {
-    gl::GlBuffer indices = {};
-    gl::GlVertexArray array = {};
+    gl::Buffer indices = {};
+    gl::VertexArray array = {};
     GLsizei index_count = 0;
   };
   static constexpr std::array<std::size_t, 4> kSteps = {1, 2, 4, 8};  // of the points along each side
@@ -51,15 +51,15 @@ class WaterRenderer : public SceneRenderer {
   float mirror_share_ = 0.0F;
   GLsizei hole_count_ = 0, bank_count_ = 0;
   std::size_t reed_count_ = 0;
-  gl::GlProgram water_, bed_, bank_, hole_, reed_;
+  gl::Program water_, bed_, bank_, hole_, reed_;
   GLint reed_rings_place_, mirror_share_place_;
-  gl::GlTexture slopes_, ripples_, reed_texture_;
-  gl::GlVertexArray hole_array_, bank_array_;
+  gl::Texture slopes_, ripples_, reed_texture_;
+  gl::VertexArray hole_array_, bank_array_;
   std::array<Sheet, kSteps.size()> sheets_;
   std::size_t level_ = 0;  // of sheets_, in the last picture
   float cell_m_ = 0.0F;
-  gl::GlBuffer rest_buffer_, height_buffer_;
-  gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
+  gl::Buffer rest_buffer_, height_buffer_;
+  gl::Buffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
   gl::StripIndices reed_strips_;
   GLint lee_place_ = -1, streaks_place_ = -1;
   Moment moment_;
@@ -68,7 +68,7 @@ class WaterRenderer : public SceneRenderer {
   std::vector<std::size_t> cell_of_;     // of memory_, for each point of the surface
   std::vector<float> gusts_, breaking_;  // of its cells
   std::vector<float> points_per_cell_;
-  gl::GlTexture memory_texture_, bed_texture_;
+  gl::Texture memory_texture_, bed_texture_;
   GLsizei bed_texels_;
   float cell_px_;
   bool has_bed_ = false;

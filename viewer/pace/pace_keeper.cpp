@@ -19,14 +19,14 @@ constexpr double kBladesPerSecond = 0.08;  // of all; of the coarseness, as much
 
 }  // namespace
 
-PaceKeeper::PaceKeeper(const PaceLadder& ladder, std::size_t first)
+Keeper::Keeper(const Ladder& ladder, std::size_t first)
     : ladder_(ladder), step_(std::min(first, ladder.size() - 1)), drawn_(ladder[step_].part) {
   settle();
 }
 
-void PaceKeeper::set_ladder(const PaceLadder& ladder) {
+void Keeper::set_ladder(const Ladder& ladder) {
   if (ladder == ladder_) return;
-  const PaceStep before = ladder_[step_];
+  const Step before = ladder_[step_];
   ladder_ = ladder;
   // The same picture, or the first one that has no more; in the same time, where that can be.
   step_ = ladder_.slowest_of(before.quality);
@@ -37,7 +37,7 @@ void PaceKeeper::set_ladder(const PaceLadder& ladder) {
   settle();
 }
 
-void PaceKeeper::settle() {
+void Keeper::settle() {
   settling_s_ = kSettling_s;
   warming_s_ = kWarming_s;
   saves_.fill(kExpected);
@@ -48,7 +48,7 @@ void PaceKeeper::settle() {
   spare_s_ = 0.0;
 }
 
-void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
+void Keeper::advance(double passed_s, std::optional<double> work_s) {
   passed_s = std::clamp(passed_s, 0.0, kLongest_s);
   settling_s_ = std::max(settling_s_ - passed_s, 0.0);
   warming_s_ = std::max(warming_s_ - passed_s, 0.0);
@@ -70,13 +70,13 @@ void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
   drawn_.coarseness += std::clamp(step().part.coarseness - drawn_.coarseness, -most, most);
 }
 
-double PaceKeeper::median_of_works_s() {
+double Keeper::median_of_works_s() {
   const auto middle = works_s_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
   std::nth_element(works_s_.begin(), middle, works_s_.begin() + static_cast<std::ptrdiff_t>(count_));
   return *middle;
 }
 
-void PaceKeeper::judge() {
+void Keeper::judge() {
   median_s_ = median_of_works_s();
   learn();
   const double over_s = judged_over_s_;
@@ -94,7 +94,7 @@ void PaceKeeper::judge() {
 }
 
 /// What the step to here has saved, or cost. Of several steps at once each has done as much.
-void PaceKeeper::learn() {
+void Keeper::learn() {
   if (median_s_ <= kTooLong * picture_s()) worthwhile_step_ = step_;
   if (!change_) return;
   const auto [low, high] = std::minmax(change_->from, step_);
@@ -110,7 +110,7 @@ void PaceKeeper::learn() {
 
 /// The first step in which pictures are expected in time; where there is none, the first that is as little late as can
 /// be. Steps by which nothing was saved are given back.
-std::size_t PaceKeeper::least_late() const {
+std::size_t Keeper::least_late() const {
   const auto late = [&](std::size_t step) { return expected_s(step) / ladder_.picture_s(step); };
   std::size_t best = std::min(worthwhile_step_, step_);
   for (std::size_t i = best; i < ladder_.size() && late(best) > 1.0; ++i) {
@@ -119,11 +119,11 @@ std::size_t PaceKeeper::least_late() const {
   return best;
 }
 
-bool PaceKeeper::may_change() const {
+bool Keeper::may_change() const {
   return settling_s_ > 0.0 || since_changes_s_[1] >= kHour_s;
 }
 
-void PaceKeeper::go_to(std::size_t step) {
+void Keeper::go_to(std::size_t step) {
   change_ = Change{step_, std::max(median_s_, 1e-6)};
   step_ = step;
   spare_s_ = 0.0;
@@ -132,7 +132,7 @@ void PaceKeeper::go_to(std::size_t step) {
 
 /// How long a picture would take in another step. Where only the time for it differs it takes as long, but should leave
 /// room.
-double PaceKeeper::expected_s(std::size_t step) const {
+double Keeper::expected_s(std::size_t step) const {
   double expected_s = median_s_;
   for (std::size_t i = step_ + 1; i <= step; ++i) {
     if (is_picture_step(i)) expected_s *= saves_[i];
@@ -142,7 +142,7 @@ double PaceKeeper::expected_s(std::size_t step) const {
 }
 
 /// Does this step differ in the picture from the one before it?
-bool PaceKeeper::is_picture_step(std::size_t step) const {
+bool Keeper::is_picture_step(std::size_t step) const {
   return step > 0 && ladder_[step].refreshes == ladder_[step - 1].refreshes;
 }
 

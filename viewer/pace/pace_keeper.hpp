@@ -10,7 +10,7 @@
 
 namespace yuragi::viewer::pace {
 
-/// Chooses how much is drawn (PaceLadder) by how long pictures take, so that they come at an even pace on a machine of
+/// Chooses how much is drawn (Ladder) by how long pictures take, so that they come at an even pace on a machine of
 /// any speed.
 ///
 /// It judges the median of the pictures of kJudge_s, so that one slow picture changes nothing. Where they take too
@@ -22,7 +22,7 @@ namespace yuragi::viewer::pace {
 /// not known, and after settle(). The grass and the meshes change slowly, so that no blade comes or goes at once.
 ///
 /// Pure: times are parameters. Allocates nothing. Thread-safe: no.
-class PaceKeeper {
+class Keeper {
  public:
   static constexpr double kJudge_s = 3.0;
   static constexpr double kSpare_s = 60.0;
@@ -30,26 +30,26 @@ class PaceKeeper {
   static constexpr double kHour_s = 3600.0;
 
   /// It begins at this step.
-  PaceKeeper(const PaceLadder& ladder, std::size_t first);
+  Keeper(const Ladder& ladder, std::size_t first);
 
   /// Another ladder: it goes on at the step of it that is most like the present one. Nothing where it is the same.
-  void set_ladder(const PaceLadder& ladder);
+  void set_ladder(const Ladder& ladder);
   /// What is drawn has changed, in size or kind: what was measured is forgotten.
   void settle();
 
-  /// Another part of the same wall gives up so much (PaceLadder::given_up): no more is drawn here. What its own
+  /// Another part of the same wall gives up so much (Ladder::given_up): no more is drawn here. What its own
   /// pictures would need is not known meanwhile.
   void hold(std::uint8_t given_up) { held_ = given_up; }
   /// Is less drawn than this machine could, for another part of the wall?
   bool is_held() const { return drawn_step() != step_; }
   /// What it would give up by itself.
-  std::uint8_t given_up() const { return PaceLadder::given_up(ladder_[step_]); }
+  std::uint8_t given_up() const { return Ladder::given_up(ladder_[step_]); }
 
   /// A picture was made, and the one before it began `passed_s` before it. `work_s`: how long it took, without waiting
   /// for the display; null where that was not measured, or is no measure of the next ones, since shaders were compiled.
   void advance(double passed_s, std::optional<double> work_s);
 
-  const PaceStep& step() const { return ladder_[drawn_step()]; }
+  const Step& step() const { return ladder_[drawn_step()]; }
   /// The step's, on the way there.
   DrawnPart drawn() const { return drawn_; }
   /// The time that there is for a picture.
@@ -68,12 +68,12 @@ class PaceKeeper {
   double expected_s(std::size_t step) const;
   bool is_picture_step(std::size_t step) const;
 
-  PaceLadder ladder_;
+  Ladder ladder_;
   std::size_t step_;                 ///< that suits this machine
   std::size_t worthwhile_step_ = 0;  ///< the last step that has saved something, or in which pictures were in time
   std::uint8_t held_ = 0;
   DrawnPart drawn_;
-  std::array<double, PaceLadder::kMaxSteps> saves_{};  ///< of the work of the step before, what is left in each
+  std::array<double, Ladder::kMaxSteps> saves_{};  ///< of the work of the step before, what is left in each
 
   std::array<double, 128> works_s_{};  ///< since the last judgement
   std::size_t count_ = 0;

@@ -16,9 +16,9 @@ auto rank_of(look::Quality quality) {
 
 }  // namespace
 
-PaceLadder::PaceLadder(look::Quality wanted, double refresh_s)
+Ladder::Ladder(look::Quality wanted, double refresh_s)
     : refresh_s_(std::clamp(refresh_s, kQuickestDisplay_s, kSlowestDisplay_s)) {
-  PaceStep step{.quality = wanted == look::Quality::kAuto ? look::Quality::kHigh : wanted};
+  Step step{.quality = wanted == look::Quality::kAuto ? look::Quality::kHigh : wanted};
   steps_[count_++] = step;
   while (2.0 * step.refreshes * refresh_s_ * kMinPerSecond <= 1.0) {
     step.refreshes *= 2;
@@ -36,18 +36,18 @@ PaceLadder::PaceLadder(look::Quality wanted, double refresh_s)
   }
 }
 
-std::uint8_t PaceLadder::given_up(const PaceStep& step) {
+std::uint8_t Ladder::given_up(const Step& step) {
   const auto part = step.part == DrawnPart{} ? 0 : std::ranges::find(kParts, step.part) - kParts.begin() + 1;
   return static_cast<std::uint8_t>(rank_of(step.quality) + part);
 }
 
-std::size_t PaceLadder::giving_up(std::uint8_t least) const {
+std::size_t Ladder::giving_up(std::uint8_t least) const {
   std::size_t i = 0;
   while (i + 1 < count_ && given_up(steps_[i]) < least) ++i;
   return i;
 }
 
-std::size_t PaceLadder::slowest_of(look::Quality quality) const {
+std::size_t Ladder::slowest_of(look::Quality quality) const {
   std::size_t i = 0;
   while (i + 1 < count_ &&
          (rank_of(steps_[i].quality) < rank_of(quality) || steps_[i].refreshes < steps_[count_ - 1].refreshes))

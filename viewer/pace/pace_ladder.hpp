@@ -18,12 +18,12 @@ struct DrawnPart {
 };
 
 /// One way to draw: what a picture has, and how often there is one.
-struct PaceStep {
+struct Step {
   look::Quality quality = look::Quality::kHigh;
   DrawnPart part = {};
   int refreshes = 1;  ///< of the display, from one picture to the next
 
-  friend bool operator==(const PaceStep&, const PaceStep&) = default;
+  friend bool operator==(const Step&, const Step&) = default;
 };
 
 /// All ways to draw, each less work than the one before. First fewer pictures, at the display's rate or a half, a
@@ -32,7 +32,7 @@ struct PaceStep {
 /// is, but that low has fewer pixels, too.
 ///
 /// Allocates nothing. Thread-safe: no.
-class PaceLadder {
+class Ladder {
  public:
   static constexpr std::size_t kMaxSteps = 12;
   static constexpr double kMinPerSecond = 24.0;
@@ -44,24 +44,24 @@ class PaceLadder {
                                                     {.side = 0.50F, .blades = 0.45F, .coarseness = 1.4F}}};
 
   /// `refresh_s`: from one refresh of the display to the next.
-  PaceLadder(look::Quality wanted, double refresh_s);
+  Ladder(look::Quality wanted, double refresh_s);
 
   std::size_t size() const { return count_; }
-  const PaceStep& operator[](std::size_t i) const { return steps_[i]; }
+  const Step& operator[](std::size_t i) const { return steps_[i]; }
   /// The time that there is for a picture.
   double picture_s(std::size_t i) const { return refresh_s_ * static_cast<double>(steps_[i].refreshes); }
   /// How much of the picture itself a step gives up: the same number of steps in every ladder, whatever its rates and
   /// qualities.
-  static std::uint8_t given_up(const PaceStep& step);
+  static std::uint8_t given_up(const Step& step);
   /// The first step that gives up so much; the last one where none does.
   std::size_t giving_up(std::uint8_t least) const;
   /// The first step with this quality or a lower one and as few pictures as there may be.
   std::size_t slowest_of(look::Quality quality) const;
 
-  friend bool operator==(const PaceLadder&, const PaceLadder&) = default;
+  friend bool operator==(const Ladder&, const Ladder&) = default;
 
  private:
-  std::array<PaceStep, kMaxSteps> steps_{};
+  std::array<Step, kMaxSteps> steps_{};
   std::size_t count_ = 0;
   double refresh_s_;
 };

@@ -7,7 +7,7 @@
 
 namespace yuragi::viewer::picture {
 
-PictureDirector::PictureDirector(const ViewerOptions& options, Renderer& renderer, std::string source)
+Director::Director(const ViewerOptions& options, Renderer& renderer, std::string source)
     : options_(options), renderer_(renderer), source_(std::move(source)), view_(read_camera_view(options.camera)) {
   // What the command line asks for comes before the hour.
   if (is_camera_named()) {
@@ -21,23 +21,23 @@ PictureDirector::PictureDirector(const ViewerOptions& options, Renderer& rendere
   frame();
 }
 
-void PictureDirector::set_scenes(std::vector<wire::SceneModel> scenes) {
+void Director::set_scenes(std::vector<wire::SceneModel> scenes) {
   renderer_.set_scenes(std::move(scenes));
   if (std::exchange(has_scenes_, true)) return;
   require_scene();
   frame();
 }
 
-void PictureDirector::frame() {
+void Director::frame() {
   camera_.frame(first_place());
 }
 
 /// A window of another shape: the first place is another, and who is there stays there.
-void PictureDirector::follow_aspect() {
+void Director::follow_aspect() {
   if (renderer_.aspect() != framed_aspect_) camera_.move_home(first_place());
 }
 
-meshes::CameraPlace PictureDirector::first_place() {
+meshes::CameraPlace Director::first_place() {
   framed_aspect_ = renderer_.aspect();
   meshes::CameraPlace place = renderer_.home(wind_from_deg_);
   if (view_) {
@@ -48,25 +48,25 @@ meshes::CameraPlace PictureDirector::first_place() {
   return place;
 }
 
-void PictureDirector::take_status(const wire::Sensors& status, double fade_s) {
+void Director::take_status(const wire::Sensors& status, double fade_s) {
   const bool is_first = !std::exchange(has_status_, true);
   is_first ? sky_.start(look_for(status.look)) : sky_.set_look(look_for(status.look), fade_s);
   cameras_.set_cameras(status.cameras, status.camera);
   if (is_first) require_camera();
 }
 
-meshes::OrbitCamera& PictureDirector::take_camera() {
+meshes::OrbitCamera& Director::take_camera() {
   if (cameras_.now().camera) camera_.go_to(place_for(cameras_.now()));
   cameras_.take_by_hand();
   return camera_;
 }
 
-void PictureDirector::show_home() {
+void Director::show_home() {
   cameras_.take_by_hand();
   camera_.reset();
 }
 
-void PictureDirector::show_next_quality(look::Quality present) {
+void Director::show_next_quality(look::Quality present) {
   switch (quality_.value_or(present)) {
     case look::Quality::kLow:
       quality_ = look::Quality::kMedium;
@@ -81,17 +81,17 @@ void PictureDirector::show_next_quality(look::Quality present) {
   }
 }
 
-void PictureDirector::reset_camera() {
+void Director::reset_camera() {
   if (!cameras_.reset()) camera_.reset();
 }
 
-void PictureDirector::frame_scenes(bool are_all) {
+void Director::frame_scenes(bool are_all) {
   cameras_.take_by_hand();
   frame();
   if (are_all) cameras_.reset();
 }
 
-void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVector& wind) {
+void Director::advance(double passed_s, double utc_s, const wind::Vector& wind) {
   follow_aspect();
   cameras_.advance(passed_s);
   if (utc_s != std::exchange(utc_s_, utc_s)) cameras_.hear_clock(utc_s);
@@ -102,7 +102,7 @@ void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVec
   renderer_.set_quality(quality_.value_or(look.quality), static_cast<float>(look.density));
 }
 
-void PictureDirector::draw(const stream::PoseMoment& moment) {
+void Director::draw(const stream::PoseMoment& moment) {
   view_wind_from_deg_ = moment.view_wind_from_deg;
   Picture picture{.moment = moment, .camera = place_for(cameras_.now())};
   if (cameras_.is_fading()) {
@@ -112,24 +112,24 @@ void PictureDirector::draw(const stream::PoseMoment& moment) {
   renderer_.draw(picture);
 }
 
-std::string PictureDirector::camera_text() const {
+std::string Director::camera_text() const {
   if (cameras_.cameras().empty()) return {};
   const std::string name = cameras_.now().name();
   const std::string fading = cameras_.is_fading() ? ", cross-fading" : "";
   return (name.empty() ? "camera by hand" : "camera " + name) + fading;
 }
 
-look::Look PictureDirector::look_for(const look::Look& senders) const {
+look::Look Director::look_for(const look::Look& senders) const {
   return *look::edited(senders, options_.look);
 }
 
-meshes::CameraPlace PictureDirector::place_for(const Shot& shot) const {
+meshes::CameraPlace Director::place_for(const Shot& shot) const {
   if (!shot.camera) return camera_.place();
   return place_of(*shot.camera, renderer_.bounds_of(shot.camera->scene), renderer_.aspect(), shot.utc_s,
                   view_wind_from_deg_, renderer_.obstacles());
 }
 
-void PictureDirector::require_scene() const {
+void Director::require_scene() const {
   if (options_.scene.empty()) return;
   std::string names;
   for (const wire::SceneModel* scene : renderer_.scenes()) {
@@ -139,7 +139,7 @@ void PictureDirector::require_scene() const {
   throw ViewerExit(EX_USAGE, "--scene: " + source_ + " has no scene '" + options_.scene + "'; it has: " + names);
 }
 
-void PictureDirector::require_camera() const {
+void Director::require_camera() const {
   if (!is_camera_named() || cameras_.has(options_.camera)) return;
   std::string names;
   for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;

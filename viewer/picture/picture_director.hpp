@@ -14,10 +14,10 @@ namespace yuragi::viewer::picture {
 
 /// What the pictures of a stream show, by the sender's values and the command line's: scenes, light, camera.
 /// Pure but for the renderer: time is a parameter. Thread-safe: no.
-class PictureDirector {
+class Director {
  public:
   /// `source`: who sends the stream, for people. Both others must outlive this.
-  PictureDirector(const ViewerOptions& options, Renderer& renderer, std::string source);
+  Director(const ViewerOptions& options, Renderer& renderer, std::string source);
 
   /// Where the sender's wind usually comes from, before its scenes: the first view looks across it.
   void set_wind_from(double wind_from_deg) { wind_from_deg_ = wind_from_deg; }
@@ -47,7 +47,7 @@ class PictureDirector {
   void frame_scenes(bool are_all);
 
   /// Advances by passed_s. `utc_s`: the sender's clock, as its newest frame has it; 0 before the first.
-  void advance(double passed_s, double utc_s, const wind::WindVector& wind);
+  void advance(double passed_s, double utc_s, const wind::Vector& wind);
   void draw(const stream::PoseMoment& moment);
 
   /// What the last picture showed.

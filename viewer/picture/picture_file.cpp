@@ -10,12 +10,12 @@
 #include "viewer/picture/viewer_exit.hpp"
 
 namespace yuragi::viewer::picture {
-std::optional<PictureFormat> picture_format(const std::filesystem::path& file) {
+std::optional<Format> picture_format(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  if (extension == ".png") return PictureFormat::kPng;
-  if (extension == ".jpg" || extension == ".jpeg") return PictureFormat::kJpeg;
+  if (extension == ".png") return Format::kPng;
+  if (extension == ".jpg" || extension == ".jpeg") return Format::kJpeg;
   return std::nullopt;
 }
 
@@ -27,7 +27,7 @@ void write_picture(const std::filesystem::path& file, int width_px, int height_p
     all.insert(all.end(), begin, begin + size);
   };
   constexpr int kJpegQuality = 92;  // of 100: blades of grass keep their edges
-  const int is_encoded = picture_format(file) == PictureFormat::kJpeg
+  const int is_encoded = picture_format(file) == Format::kJpeg
                              ? stbi_write_jpg_to_func(append, &bytes, width_px, height_px, 3, rgb.data(), kJpegQuality)
                              : stbi_write_png_to_func(append, &bytes, width_px, height_px, 3, rgb.data(), width_px * 3);
   if (is_encoded == 0) throw ViewerExit(EX_SOFTWARE, "there is no memory for the picture " + file.string());

@@ -7,10 +7,10 @@
 
 namespace yuragi::viewer::picture {
 
-enum class PictureFormat : std::uint8_t { kPng, kJpeg };
+enum class Format : std::uint8_t { kPng, kJpeg };
 
 /// The format that the end of a file's name asks for: .png, .jpg or .jpeg, in any case. Nothing for any other.
-std::optional<PictureFormat> picture_format(const std::filesystem::path& file);
+std::optional<Format> picture_format(const std::filesystem::path& file);
 
 /// Writes width x height pixels of 3 bytes, rows from the top down, in the format that the name of `file` asks for (PNG
 /// where it names none). Whoever reads `file` finds the whole picture or the one that was there before. Throws

@@ -15,8 +15,8 @@ PoseMoment rest_moment(std::span<const wire::SceneModel> scenes) {
 
 bool has_same_layout(std::span<const pose::Pose> a, std::span<const pose::Pose> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const pose::Pose& left, const pose::Pose& right) {
-    const pose::PoseArrays<const float> lefts(left);
-    const pose::PoseArrays<const float> rights(right);
+    const pose::Arrays<const float> lefts(left);
+    const pose::Arrays<const float> rights(right);
     return left.index() == right.index() && std::equal(lefts.begin(), lefts.end(), rights.begin(), rights.end(),
                                                        [](auto one, auto other) { return one.size() == other.size(); });
   });
@@ -33,9 +33,9 @@ std::size_t value_bytes(std::span<const pose::Pose> poses) {
 void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& out) {
   const auto share = static_cast<float>(weight);
   for (std::size_t scene = 0; scene < out.poses.size(); ++scene) {
-    const pose::PoseArrays<const float> from(a.poses[scene]);
-    const pose::PoseArrays<const float> to(b.poses[scene]);
-    const pose::PoseArrays<float> mixed(out.poses[scene]);
+    const pose::Arrays<const float> from(a.poses[scene]);
+    const pose::Arrays<const float> to(b.poses[scene]);
+    const pose::Arrays<float> mixed(out.poses[scene]);
     for (std::size_t array = 0; array < mixed.size(); ++array) {
       for (std::size_t i = 0; i < mixed[array].size(); ++i) {
         mixed[array][i] = from[array][i] + share * (to[array][i] - from[array][i]);

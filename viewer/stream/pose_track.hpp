@@ -11,7 +11,7 @@ double back_and_forth_s(double elapsed_s, double span_s);
 
 /// One run of a stream on the sender's time line: the frames that have arrived, and the moment that is shown.
 ///
-/// While frames arrive, the moment shown follows them at the delay of StreamClock; it never goes back, and never passes
+/// While frames arrive, the moment shown follows them at the delay of Clock; it never goes back, and never passes
 /// the newest. When they stop, it comes to rest at the newest and then goes back and forth over the last kReplaySpan_s.
 /// Thread-safe: no. Does not allocate once its history is full.
 class PoseTrack {
@@ -47,7 +47,7 @@ class PoseTrack {
   double follow_s(double passed_s, double local_s);
 
   PoseHistory history_;
-  StreamClock clock_;
+  Clock clock_;
   double shown_s_ = 0.0;  // the moment shown, on the sender's time line
   double last_local_s_ = 0.0;
   bool is_replaying_ = false;

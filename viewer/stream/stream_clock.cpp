@@ -15,7 +15,7 @@ constexpr double kMaxInterval_s = 0.25;
 
 }  // namespace
 
-void StreamClock::observe(double sender_s, double local_s) {
+void Clock::observe(double sender_s, double local_s) {
   const double offset_s = local_s - sender_s;
   if (!has_observed_) {
     has_observed_ = true;
@@ -32,7 +32,7 @@ void StreamClock::observe(double sender_s, double local_s) {
   last_local_s_ = local_s;
 }
 
-double StreamClock::delay_s() const {
+double Clock::delay_s() const {
   return std::min(std::max(wait_s_, interval_s_) + kMargin * interval_s_, kMaxDelay_s);
 }
 

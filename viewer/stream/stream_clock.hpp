@@ -10,7 +10,7 @@ namespace yuragi::viewer::stream {
 /// and half a frame interval, and comes nearer again as that is forgotten. As the playout delay of sound on networks is
 /// made: R. Ramjee, J. Kurose, D. Towsley and H. Schulzrinne, "Adaptive playout mechanisms for packetized audio
 /// applications in wide-area networks", INFOCOM 1994. Thread-safe: no. Never fails: times are finite.
-class StreamClock {
+class Clock {
  public:
   static constexpr double kMaxDelay_s = 0.5;
 

@@ -31,9 +31,9 @@ using boost::system::error_code;
 
 /// Attempts to connect follow one another on one thread; a handler of an abandoned attempt finds `attempt_` changed and
 /// does nothing.
-class StreamConnection::Session {
+class Connection::Session {
  public:
-  explicit Session(StreamOptions options)
+  explicit Session(Options options)
       : options_(std::move(options)),
         backoff_(options_.min_backoff, options_.max_backoff, static_cast<std::uint32_t>(getpid())) {
     subscription_ = wire::encode(wire::Subscribe{
@@ -56,7 +56,7 @@ class StreamConnection::Session {
     return std::exchange(inbox_, {});
   }
 
-  StreamStatus status() const {
+  Status status() const {
     const std::lock_guard lock(mutex_);
     return status_;
   }
@@ -90,9 +90,9 @@ class StreamConnection::Session {
 
   std::string address() const { return fmt::format("{}:{}", options_.host, options_.port); }
 
-  void set_status(StreamState state, std::string text) {
+  void set_status(State state, std::string text) {
     const std::lock_guard lock(mutex_);
-    status_ = {state, std::move(text), state == StreamState::kConnected && is_same_machine()};
+    status_ = {state, std::move(text), state == State::kConnected && is_same_machine()};
     announce_change();
   }
 
@@ -122,7 +122,7 @@ class StreamConnection::Session {
   void connect() {
     const std::uint64_t attempt = ++attempt_;
     reader_ = wire::MessageReader(wire::kMaxServerMessageBytes);
-    set_status(StreamState::kConnecting, "connecting to " + address());
+    set_status(State::kConnecting, "connecting to " + address());
     watch_silence(attempt);
     resolver_.async_resolve(options_.host, std::to_string(options_.port),
                             [this, attempt](error_code error, const tcp::resolver::results_type& found) {
@@ -150,7 +150,7 @@ class StreamConnection::Session {
       is_subscribed_ = true;
     });
     begin_inbox();
-    set_status(StreamState::kConnected, "connected to " + address());
+    set_status(State::kConnected, "connected to " + address());
     read(attempt);
   }
 
@@ -187,7 +187,7 @@ class StreamConnection::Session {
   bool digest() {
     while (auto message = reader_.next()) {
       if (!*message) {
-        if (message->error() == wire::WireError::kUnknown) continue;  // of a newer server
+        if (message->error() == wire::Error::kUnknown) continue;  // of a newer server
         give_up(fmt::format("{} is not a Yuragi daemon: {}", address(), wire::name_of(message->error())));
         return false;
       }
@@ -247,14 +247,14 @@ class StreamConnection::Session {
     resolver_.cancel();
     silence_.cancel();
     socket_.close(ignored);
-    set_status(StreamState::kWaiting, why);
+    set_status(State::kWaiting, why);
     retry_.expires_after(backoff_.next());
     retry_.async_wait([this](error_code error) {
       if (!error) connect();
     });
   }
 
-  const StreamOptions options_;
+  const Options options_;
   wire::Bytes subscription_;
 
   // Of the connection's thread alone.
@@ -277,27 +277,27 @@ class StreamConnection::Session {
   std::condition_variable news_;
   bool has_news_ = false;
   Inbox inbox_;
-  StreamStatus status_;
+  Status status_;
 
   std::thread thread_;
 };
 
-StreamConnection::StreamConnection(StreamOptions options) : session_(std::make_unique<Session>(std::move(options))) {}
-StreamConnection::~StreamConnection() = default;
+Connection::Connection(Options options) : session_(std::make_unique<Session>(std::move(options))) {}
+Connection::~Connection() = default;
 
-Inbox StreamConnection::take() {
+Inbox Connection::take() {
   return session_->take();
 }
-StreamStatus StreamConnection::status() const {
+Status Connection::status() const {
   return session_->status();
 }
-void StreamConnection::send(const wire::Control& control) {
+void Connection::send(const wire::Control& control) {
   session_->send(control);
 }
-void StreamConnection::send(const wire::Display& display) {
+void Connection::send(const wire::Display& display) {
   session_->send(display);
 }
-void StreamConnection::wait_for_news(Nanoseconds limit) {
+void Connection::wait_for_news(Nanoseconds limit) {
   session_->wait_for_news(limit);
 }
 

@@ -27,15 +27,15 @@ struct Inbox {
   std::vector<wire::ControlReply> replies;  ///< oldest first
 };
 
-enum class StreamState : std::uint8_t { kConnecting, kConnected, kWaiting };
+enum class State : std::uint8_t { kConnecting, kConnected, kWaiting };
 
-struct StreamStatus {
-  StreamState state = StreamState::kConnecting;
+struct Status {
+  State state = State::kConnecting;
   std::string text;              ///< for a person: "connected to 127.0.0.1:7410 (yuragi 0.1.0)"
   bool is_same_machine = false;  ///< connected by an address of this machine: the daemon, or the end of a tunnel
 };
 
-struct StreamOptions {
+struct Options {
   std::string host = "127.0.0.1";
   std::uint16_t port = wire::kDefaultPort;
   Secret token = {};                                         ///< of the daemon's installation; empty: none is shown
@@ -49,20 +49,20 @@ struct StreamOptions {
 ///
 /// Memory is bounded: without take() the oldest frames and replies are dropped, never scenes. Thread-safe: yes; meant
 /// for one reader. The destructor stops at once.
-class StreamConnection {
+class Connection {
  public:
   static constexpr std::size_t kMaxWaitingFrames = 64;
   static constexpr std::size_t kMaxWaitingReplies = 64;
 
-  explicit StreamConnection(StreamOptions options);
-  ~StreamConnection();
-  StreamConnection(const StreamConnection&) = delete;
-  StreamConnection& operator=(const StreamConnection&) = delete;
+  explicit Connection(Options options);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
 
   /// What has arrived since the last call. Never waits for the network.
   Inbox take();
 
-  StreamStatus status() const;
+  Status status() const;
 
   /// Sends a Control, soon. Where there is no connection it is dropped, and no reply comes.
   void send(const wire::Control& control);

@@ -8,7 +8,7 @@ constexpr const char* kAdvice =
 
 }  // namespace
 
-const std::string& StreamNotice::advance(double now_s, Playback playback, const StreamStatus& status) {
+const std::string& Notice::advance(double now_s, Playback playback, const Status& status) {
   if (playback != Playback::kNothing) {
     text_.clear();
     since_s_.reset();
@@ -18,11 +18,11 @@ const std::string& StreamNotice::advance(double now_s, Playback playback, const 
     since_s_ = now_s;
     status_text_ = status.text;
   }
-  if (status.state == StreamState::kWaiting) {
+  if (status.state == State::kWaiting) {
     text_ = status.text + kAdvice;
   } else if (now_s - *since_s_ >= kPatience_s) {
     // An attempt that follows a failure does not hide its reason.
-    if (status.state == StreamState::kConnected) {
+    if (status.state == State::kConnected) {
       text_ = status.text + ", but no picture has come yet." + kAdvice;
     } else if (text_.empty()) {
       text_ = status.text + ": no answer yet." + kAdvice;

@@ -12,12 +12,12 @@ namespace yuragi::viewer::stream {
 /// once; an attempt that neither fails nor brings a frame, after kPatience_s. The words stay until others replace them
 /// or frames come, so that they do not flicker while the connection is tried again. Once frames have come it stays
 /// empty: a lost stream is replayed. Not thread-safe.
-class StreamNotice {
+class Notice {
  public:
   static constexpr double kPatience_s = 1.0;
 
   /// `now_s`: on any clock that only advances. Empty: there is nothing to show.
-  const std::string& advance(double now_s, Playback playback, const StreamStatus& status);
+  const std::string& advance(double now_s, Playback playback, const Status& status);
 
  private:
   std::string text_;

@@ -14,8 +14,8 @@ class TestCard {
   void draw(const output::Size& size);
 
  private:
-  gl::GlProgram program_;
-  gl::GlVertexArray no_attributes_;
+  gl::Program program_;
+  gl::VertexArray no_attributes_;
   GLint picture_px_;
 };
 

@@ -24,7 +24,7 @@ constexpr int kUsualRate_hz = 60;
 /// Set by GLFW's callback, which has no place for data of ours.
 bool have_monitors_changed = false;
 
-struct WallWindow {
+struct Window {
   output::Window settings;
   GLFWwindow* handle = nullptr;
   std::string monitor_name = {};        // by which it is found again, also where it was asked for by its number
@@ -60,7 +60,7 @@ struct Wall::State {
   }
   ~State() {
     glfwSetMonitorCallback(nullptr);
-    for (const WallWindow& window : windows) {
+    for (const Window& window : windows) {
       if (window.handle != windows.front().handle) glfwDestroyWindow(window.handle);
     }
     glfwMakeContextCurrent(windows.front().handle);
@@ -84,7 +84,7 @@ struct Wall::State {
   /// Each window on its monitor, or hidden.
   void place() {
     bool is_first = true;
-    for (WallWindow& window : windows) {
+    for (Window& window : windows) {
       const auto monitor = monitor_named(window.monitor_name);
       if (monitor != window.monitor) move(window, monitor);
       if (!window.monitor) continue;
@@ -95,12 +95,12 @@ struct Wall::State {
     }
     glfwMakeContextCurrent(windows.front().handle);
     std::vector<output::Size> sizes;
-    for (const WallWindow& window : windows) sizes.push_back(window.monitor ? window.monitor->size : output::Size{});
+    for (const Window& window : windows) sizes.push_back(window.monitor ? window.monitor->size : output::Size{});
     const output::Size wanted = wall::picture_size(output, sizes);
     if (wanted.width_px > 0 && wanted.height_px > 0) size = wanted;
   }
 
-  static void move(WallWindow& window, const std::optional<Monitor>& monitor) {
+  static void move(Window& window, const std::optional<Monitor>& monitor) {
     if (monitor) {
       if (window.monitor != std::nullopt) glfwSetWindowMonitor(window.handle, nullptr, 0, 0, 64, 64, GLFW_DONT_CARE);
       glfwSetWindowMonitor(window.handle, monitor->handle, 0, 0, monitor->size.width_px, monitor->size.height_px,
@@ -116,8 +116,8 @@ struct Wall::State {
   }
 
   output::Output output;
-  std::vector<WallWindow> windows;
-  std::optional<WallPass> pass;
+  std::vector<Window> windows;
+  std::optional<Pass> pass;
   bool has_fences = false;  // one context can wait for another without the processor: from OpenGL 3.2 on
   output::Size size{.width_px = 1280, .height_px = 720};
   double looked_s = -std::numeric_limits<double>::infinity();
@@ -134,7 +134,7 @@ void Wall::follow_monitors(double now_s) {
 }
 
 bool Wall::is_dark() const {
-  return std::ranges::none_of(state_->windows, [](const WallWindow& window) { return window.monitor.has_value(); });
+  return std::ranges::none_of(state_->windows, [](const Window& window) { return window.monitor.has_value(); });
 }
 
 output::Size Wall::picture_size() const {
@@ -143,14 +143,14 @@ output::Size Wall::picture_size() const {
 
 double Wall::picture_interval_s() const {
   int rate_hz = 0;
-  for (const WallWindow& window : state_->windows) {
+  for (const Window& window : state_->windows) {
     if (rate_hz == 0 && window.monitor) rate_hz = window.monitor->refresh_rate_hz;
   }
   return static_cast<double>(state_->output.refreshes) / (rate_hz > 0 ? rate_hz : kUsualRate_hz);
 }
 
 void Wall::show(const gl::RenderTarget& target, bool is_marked) {
-  WallPass& pass = *state_->pass;
+  Pass& pass = *state_->pass;
   pass.take(target);
   const GLsync is_taken = state_->has_fences ? glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
   if (is_taken != nullptr) {
@@ -159,7 +159,7 @@ void Wall::show(const gl::RenderTarget& target, bool is_marked) {
     glFinish();
   }
   // All are drawn before one is shown, so that they change together.
-  for (const WallWindow& window : state_->windows) {
+  for (const Window& window : state_->windows) {
     if (!window.monitor) continue;
     glfwMakeContextCurrent(window.handle);
     if (is_taken != nullptr) glWaitSync(is_taken, 0, GL_TIMEOUT_IGNORED);
@@ -168,7 +168,7 @@ void Wall::show(const gl::RenderTarget& target, bool is_marked) {
     glfwGetFramebufferSize(window.handle, &size.width_px, &size.height_px);
     pass.draw(window.settings, size, window.vertex_array, is_marked);
   }
-  for (const WallWindow& window : state_->windows) {
+  for (const Window& window : state_->windows) {
     if (!window.monitor) continue;
     glfwMakeContextCurrent(window.handle);
     glfwSwapBuffers(window.handle);

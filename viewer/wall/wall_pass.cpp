@@ -7,7 +7,7 @@
 
 namespace yuragi::viewer::wall {
 
-WallPass::WallPass() : program_(gl::link_program("wall", gl::shaders::kDoorVert, gl::shaders::kWallFrag)) {
+Pass::Pass() : program_(gl::link_program("wall", gl::shaders::kDoorVert, gl::shaders::kWallFrag)) {
   gl::set_sampler(program_, "picture", 0);
   const auto place = [this](const char* name) { return glGetUniformLocation(program_.name(), name); };
   monitor_px_ = place("monitor_px");
@@ -18,12 +18,12 @@ WallPass::WallPass() : program_(gl::link_program("wall", gl::shaders::kDoorVert,
   is_marked_ = place("is_marked");
 }
 
-void WallPass::take(const gl::RenderTarget& target) {
+void Pass::take(const gl::RenderTarget& target) {
   glActiveTexture(GL_TEXTURE0);
   picture_.take(target);
 }
 
-void WallPass::draw(const output::Window& window, const output::Size& monitor, GLuint vertex_array, bool is_marked) {
+void Pass::draw(const output::Window& window, const output::Size& monitor, GLuint vertex_array, bool is_marked) {
   glViewport(0, 0, monitor.width_px, monitor.height_px);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);

@@ -9,9 +9,9 @@ namespace yuragi::viewer::wall {
 
 /// The last pass: a window's crop of the picture, rotated, straightened and blended, onto its monitor. One for all
 /// windows, whose contexts share it; take() in the context that made it, draw() in each window's.
-class WallPass {
+class Pass {
  public:
-  WallPass();
+  Pass();
 
   /// Takes the resolved pixels of `target`.
   void take(const gl::RenderTarget& target);
@@ -21,7 +21,7 @@ class WallPass {
   void draw(const output::Window& window, const output::Size& monitor, GLuint vertex_array, bool is_marked);
 
  private:
-  gl::GlProgram program_;
+  gl::Program program_;
   gl::PictureCopy picture_{GL_LINEAR};
   GLint monitor_px_, to_crop_, crop_, blend_, gamma_, is_marked_;
 };

@@ -36,7 +36,7 @@ void SensorMeasurement::take(const wire::Message& message, Instant now) {
 }
 
 void SensorMeasurement::take_frame(const wire::Frame& frame, Instant now) {
-  const wind::WindState& wind = frame.info.wind;
+  const wind::State& wind = frame.info.wind;
   const SeenFrame seen{wind.reading_age_s, hash_of(frame.poses)};
   ++measured_.frames;
   measured_.largest_live_weight = std::max(measured_.largest_live_weight, wind.live_weight);

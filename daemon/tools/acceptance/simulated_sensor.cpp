@@ -20,12 +20,12 @@ constexpr double kDirectionStep_deg = 1.0;  ///< a simulated device rounds to it
 /// `north_offset_deg`: what the driver itself adds to directions.
 ExpectedWind expected_wind(const SensorConfig& sensor, double north_offset_deg, double step_m_s) {
   const auto calibrated = [&](double speed_m_s) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.speed_m_s = speed_m_s;
     reading.direction_deg = std::fmod(kSimulatedDirection_deg + north_offset_deg + 360.0, 360.0);
     return sensor.calibration.applied_to(reading);
   };
-  const wind::WindReading middle = calibrated(kSimulatedSpeed_m_s);
+  const wind::Reading middle = calibrated(kSimulatedSpeed_m_s);
   const double least_m_s = calibrated(kSimulatedSpeed_m_s - step_m_s).speed_m_s;
   const double most_m_s = calibrated(kSimulatedSpeed_m_s + step_m_s).speed_m_s;
   return {.speed_m_s = middle.speed_m_s,

@@ -28,23 +28,23 @@ std::string read_line() {
 
 }  // namespace
 
-CalibrationDialog::CalibrationDialog(bool takes_yes)
+Dialog::Dialog(bool takes_yes)
     : takes_yes_(takes_yes),
       has_person_(!takes_yes && isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0),
       is_watched_(isatty(STDERR_FILENO) != 0) {}
 
-void CalibrationDialog::print(const std::string& text) const {
+void Dialog::print(const std::string& text) const {
   settings::write_at_once(text + "\n");
 }
 
-void CalibrationDialog::wait_until_prepared(const std::string& what) const {
+void Dialog::wait_until_prepared(const std::string& what) const {
   print(what);
   if (!has_person_) return;
   settings::write_at_once("Press Enter when ready, Ctrl-C to quit: ");
   read_line();
 }
 
-double CalibrationDialog::prompt_number(const std::string& question, double least, double most) const {
+double Dialog::prompt_number(const std::string& question, double least, double most) const {
   for (;;) {
     settings::write_at_once(fmt::format("{} ({:g} to {:g}): ", question, least, most));
     const std::string line = read_line();
@@ -55,14 +55,14 @@ double CalibrationDialog::prompt_number(const std::string& question, double leas
   }
 }
 
-bool CalibrationDialog::confirm(const std::string& question) const {
+bool Dialog::confirm(const std::string& question) const {
   if (!has_person_) return takes_yes_;
   settings::write_at_once(question + " [y/N] ");
   const std::string answer = read_line();
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
-void CalibrationDialog::show(double elapsed_s, const std::string& values, bool is_last) {
+void Dialog::show(double elapsed_s, const std::string& values, bool is_last) {
   if (is_watched_) {
     fmt::print(stderr, "\r\x1b[K{}{}", values, is_last ? "\n" : "");
   } else if (is_last || elapsed_s >= next_line_s_) {

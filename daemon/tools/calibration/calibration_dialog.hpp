@@ -6,10 +6,10 @@ namespace yuragi::daemon::tools::calibration {
 
 /// Leads a person through a calibration: steps and results on standard output, live values on standard error. If
 /// there is no person (no terminal, or --yes), it never waits.
-class CalibrationDialog {
+class Dialog {
  public:
   /// `takes_yes`: every confirm() is true, and wait_until_prepared() does not wait.
-  explicit CalibrationDialog(bool takes_yes);
+  explicit Dialog(bool takes_yes);
 
   /// Returns true if there is a person at the terminal.
   bool has_person() const noexcept { return has_person_; }

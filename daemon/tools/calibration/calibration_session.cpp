@@ -56,7 +56,7 @@ std::set<std::string> settings_that_differ(const settings::SensorConfig& sensor,
 /// The live values of a sensor.
 std::string live_text(const settings::SensorConfig& sensor, const SensorReadings& collected) {
   if (collected.readings.empty()) return fmt::format("{}: waiting", sensor.name);
-  const wind::WindReading& last = collected.readings.back().reading;
+  const wind::Reading& last = collected.readings.back().reading;
   const double speed_m_s = last.speed_m_s * sensor.calibration.unit_m_s;
   return fmt::format("{}: {:.2f} m/s{}, {}", sensor.name, speed_m_s,
                      last.direction_deg ? fmt::format(" from {:.0f} deg", *last.direction_deg) : "",
@@ -65,7 +65,7 @@ std::string live_text(const settings::SensorConfig& sensor, const SensorReadings
 
 }  // namespace
 
-CalibrationSession::CalibrationSession(const CalibrationRequest& request, double default_duration_s)
+Session::Session(const Request& request, double default_duration_s)
     : request_(request), dialog_(request.takes_yes), duration_s_(request.duration_s.value_or(default_duration_s)) {
   for (const std::string& part : request_.parts) parse_part(part);
   if (is_live() && !request_.parts.empty()) throw usage("--part needs --recording");
@@ -89,7 +89,7 @@ CalibrationSession::CalibrationSession(const CalibrationRequest& request, double
   }
 }
 
-void CalibrationSession::open_source() {
+void Session::open_source() {
   std::vector<const settings::SensorConfig*> sensors = {&sensor()};
   if (reference_) sensors.push_back(reference());
   const std::string address = request_.connect.value_or(config_.stream.listen);
@@ -100,7 +100,7 @@ void CalibrationSession::open_source() {
                             request_.config_file.string(), source_->description()));
 }
 
-std::size_t CalibrationSession::find(const std::string& name) const {
+std::size_t Session::find(const std::string& name) const {
   const auto& sensors = config_.sensors;
   const auto found = std::ranges::find(sensors, name, &settings::SensorConfig::name);
   if (found != sensors.end()) return static_cast<std::size_t>(found - sensors.begin());
@@ -109,7 +109,7 @@ std::size_t CalibrationSession::find(const std::string& name) const {
   throw usage(fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
 }
 
-CollectedReadings CalibrationSession::collect(const std::string& preparation) {
+CollectedReadings Session::collect(const std::string& preparation) {
   if (!source_) open_source();
   Stretch stretch{.duration_s = duration_s_};
   if (is_live()) {
@@ -134,7 +134,7 @@ CollectedReadings CalibrationSession::collect(const std::string& preparation) {
   return collected;
 }
 
-void CalibrationSession::beware(const CollectedReadings& collected) const {
+void Session::beware(const CollectedReadings& collected) const {
   for (std::size_t index = 0; index < collected.size(); ++index) {
     const settings::SensorConfig* const one = index == 0 ? &sensor() : reference();
     if (one == nullptr) continue;
@@ -154,20 +154,20 @@ void CalibrationSession::beware(const CollectedReadings& collected) const {
   }
 }
 
-std::string CalibrationSession::progress_line(double elapsed_s, const CollectedReadings& collected) const {
+std::string Session::progress_line(double elapsed_s, const CollectedReadings& collected) const {
   std::string line = fmt::format("{:3.0f} of {:.0f} s  {}", elapsed_s, duration_s_, live_text(sensor(), collected[0]));
   if (reference_) line += "  " + live_text(*reference(), collected[1]);
   return line;
 }
 
-ParameterValue CalibrationSession::value_now(const settings::ConfigChange& change) const {
+ParameterValue Session::value_now(const settings::ConfigChange& change) const {
   return (change.table.empty() ? sensor().values : sensor().by_name.at(settings::kCalibrationTable))
       .all()
       .at(change.key);
 }
 
-std::vector<std::string> CalibrationSession::speed_effect(std::span<const settings::ConfigChange> wanted,
-                                                          std::span<const double> indicated_m_s) const {
+std::vector<std::string> Session::speed_effect(std::span<const settings::ConfigChange> wanted,
+                                               std::span<const double> indicated_m_s) const {
   ParameterValues changed = sensor().by_name.at(settings::kCalibrationTable);
   for (const settings::ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
@@ -178,7 +178,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const settin
   now.height_factor = then.height_factor = 1.0;
   std::vector<std::string> lines = {"   reading          speed now        speed then"};
   for (const double indicated : indicated_m_s) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.speed_m_s = indicated / now.unit_m_s;
     lines.push_back(fmt::format("{:8.2f} m/s       {:8.2f} m/s   {:6.2f} m/s", indicated,
                                 now.applied_to(reading).speed_m_s, then.applied_to(reading).speed_m_s));
@@ -186,7 +186,7 @@ std::vector<std::string> CalibrationSession::speed_effect(std::span<const settin
   return lines;
 }
 
-void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect) {
+void Session::finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect) {
   std::erase_if(wanted, [this](const settings::ConfigChange& change) { return change.value == value_now(change); });
   if (wanted.empty()) {
     dialog_.print("\nThe configuration has these values already: nothing to write.");
@@ -215,7 +215,7 @@ void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, cons
 }
 
 /// Has the daemon that was started with this file, if it runs, read it again; prints the result.
-void CalibrationSession::apply_in_daemon() {
+void Session::apply_in_daemon() {
   const std::string address = request_.connect.value_or(config_.stream.listen);
   const auto report = stream::ask_to_reload(address, settings::absolute_path(request_.config_file),
                                             settings::own_token(address, request_.config_file).token);
@@ -236,8 +236,7 @@ std::vector<double> indicated_speeds_m_s(const SensorReadings& collected,
   return speeds_m_s;
 }
 
-ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
-                                   double least_block_s) {
+ReferencePairs pair_with_reference(const Session& session, const CollectedReadings& collected, double least_block_s) {
   // Only if both heights are known; else the sensors are assumed to be side by side.
   const wind::judging::Calibration& calibration = session.calibration();
   wind::judging::Calibration reference = session.reference()->calibration;

@@ -17,7 +17,7 @@
 namespace yuragi::daemon::tools::calibration {
 
 /// The options that every `yuragi calibrate` has.
-struct CalibrationRequest {
+struct Request {
   std::filesystem::path config_file;
   std::string sensor;     ///< empty: the only one in the file
   std::string reference;  ///< a sensor whose readings are taken as true; empty: none
@@ -31,10 +31,10 @@ struct CalibrationRequest {
 
 /// One calibration of one sensor: opens the sources, collects readings stretch by stretch, and writes the new values to
 /// the configuration. Any function may throw ConfigError or FailureError; then nothing has been written.
-class CalibrationSession {
+class Session {
  public:
   /// Reads the configuration and finds the sensors. `default_duration_s`: of a live stretch.
-  CalibrationSession(const CalibrationRequest& request, double default_duration_s);
+  Session(const Request& request, double default_duration_s);
 
   const settings::SensorConfig& sensor() const { return config_.sensors[sensor_]; }
   /// nullptr: no reference.
@@ -42,7 +42,7 @@ class CalibrationSession {
   const wind::judging::Calibration& calibration() const { return sensor().calibration; }
   bool is_live() const { return request_.recording.empty(); }
   std::size_t part_count() const { return request_.parts.size(); }
-  CalibrationDialog& dialog() { return dialog_; }
+  Dialog& dialog() { return dialog_; }
 
   /// Collects the readings of one stretch: those of the sensor first, then of the reference. `preparation`: what a
   /// person has to do before; not shown if the source is a recording.
@@ -64,15 +64,15 @@ class CalibrationSession {
   ParameterValue value_now(const settings::ConfigChange& change) const;
   std::string progress_line(double elapsed_s, const CollectedReadings& collected) const;
 
-  CalibrationRequest request_;
-  CalibrationDialog dialog_;
+  Request request_;
+  Dialog dialog_;
   sensing::SystemClock clock_;
   double duration_s_;
   std::string text_;  ///< of the configuration
   settings::Config config_;
   std::size_t sensor_ = 0;
   std::optional<std::size_t> reference_;
-  std::unique_ptr<CalibrationSource> source_;  ///< opened by the first collect()
+  std::unique_ptr<Source> source_;  ///< opened by the first collect()
   std::size_t stretches_ = 0;
 };
 
@@ -88,8 +88,7 @@ struct ReferencePairs {
   std::vector<wind::judging::TimedSpeed> truth{};
   std::vector<wind::judging::CalibrationPoint> pairs{};
 };
-ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
-                                   double least_block_s);
+ReferencePairs pair_with_reference(const Session& session, const CollectedReadings& collected, double least_block_s);
 
 /// Throws the failure of a fit as a FailureError (kBadData).
 [[noreturn]] void refuse(const Failure& failure);

@@ -34,7 +34,7 @@ bool all_have_readings(const CollectedReadings& collected) {
 class LiveStretch {
  public:
   LiveStretch(const SensorConfigs& sensors, double duration_s, const drivers::sensor::Clock& clock,
-              const CalibrationSource::Progress& progress)
+              const Source::Progress& progress)
       : sensors_(sensors),
         duration_s_(duration_s),
         clock_(clock),
@@ -42,7 +42,7 @@ class LiveStretch {
         begun_(clock.now().mono),
         collected_(sensors.size()) {}
 
-  void add(std::size_t sensor, const wind::WindReading& reading) {
+  void add(std::size_t sensor, const wind::Reading& reading) {
     collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
@@ -77,7 +77,7 @@ class LiveStretch {
   const SensorConfigs& sensors_;
   double duration_s_;
   const drivers::sensor::Clock& clock_;
-  const CalibrationSource::Progress& progress_;
+  const Source::Progress& progress_;
   MonoTime begun_;
   CollectedReadings collected_;
   std::optional<double> all_live_from_s_;
@@ -85,7 +85,7 @@ class LiveStretch {
 };
 
 /// The devices, opened here. They stay open between two stretches, so that the second begins at once.
-class DeviceSource final : public CalibrationSource {
+class DeviceSource final : public Source {
  public:
   DeviceSource(SensorConfigs sensors, const drivers::sensor::Clock& clock)
       : sensors_(std::move(sensors)), clock_(clock) {
@@ -99,11 +99,11 @@ class DeviceSource final : public CalibrationSource {
 
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
-    for (const auto& runner : runners_) runner->drain([](const wind::WindReading&) {});  // discards earlier readings
+    for (const auto& runner : runners_) runner->drain([](const wind::Reading&) {});  // discards earlier readings
     for (;;) {
       std::this_thread::sleep_for(kDevicePause);
       for (std::size_t index = 0; index < runners_.size(); ++index) {
-        runners_[index]->drain([&](const wind::WindReading& reading) { live.add(index, reading); });
+        runners_[index]->drain([&](const wind::Reading& reading) { live.add(index, reading); });
       }
       const auto is_over = live.is_over([this](std::size_t sensor) { return runners_[sensor]->link().detail; });
       if (!is_over) return is_over.error();
@@ -125,14 +125,14 @@ const wire::SensorStatus* find_status(const wire::Sensors& all, const settings::
 }
 
 /// A client of the daemon, subscribed to the sensors. Nullopt if no daemon replies.
-std::optional<stream::StreamClient> connect_to_daemon(const std::string& address) {
-  auto client = stream::StreamClient::connect(address, kDaemonConnectTimeout);
+std::optional<stream::Client> connect_to_daemon(const std::string& address) {
+  auto client = stream::Client::connect(address, kDaemonConnectTimeout);
   if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
   return std::move(*client);
 }
 
 /// The daemon's next message about its sensors. Fails if the connection ends.
-Result<wire::Sensors, Failure> next_sensors(stream::StreamClient& client, const std::string& address) {
+Result<wire::Sensors, Failure> next_sensors(stream::Client& client, const std::string& address) {
   for (;;) {
     auto message = client.receive(kDaemonSilence);
     if (!message) return stream::connection_lost(address, message.error());
@@ -142,7 +142,7 @@ Result<wire::Sensors, Failure> next_sensors(stream::StreamClient& client, const 
 }
 
 /// The daemon as the source: it sends each sensor's last raw reading about twice a second.
-class DaemonSource final : public CalibrationSource {
+class DaemonSource final : public Source {
  public:
   DaemonSource(SensorConfigs sensors, std::string address, const drivers::sensor::Clock& clock)
       : sensors_(std::move(sensors)), address_(std::move(address)), clock_(clock) {}
@@ -177,8 +177,8 @@ class DaemonSource final : public CalibrationSource {
   }
 
  private:
-  wind::WindReading reading_of(const wire::SensorStatus& status) const {
-    wind::WindReading reading;
+  wind::Reading reading_of(const wire::SensorStatus& status) const {
+    wind::Reading reading;
     reading.time = clock_.now();
     reading.speed_m_s = status.raw_speed_m_s.value_or(0.0);
     reading.direction_deg = status.raw_direction_deg;
@@ -192,7 +192,7 @@ class DaemonSource final : public CalibrationSource {
 };
 
 /// A recording, read from its beginning for each stretch.
-class RecordedSource final : public CalibrationSource {
+class RecordedSource final : public Source {
  public:
   RecordedSource(SensorConfigs sensors, std::filesystem::path file)
       : sensors_(std::move(sensors)), file_(std::move(file)) {}
@@ -219,7 +219,7 @@ class RecordedSource final : public CalibrationSource {
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     auto open = opened();
     if (!open) return open.error();
-    drivers::windlog::WindlogReader& reader = *open;
+    drivers::windlog::Reader& reader = *open;
     if (stretch.from_s) reader.seek(from_seconds(*stretch.from_s));
     CollectedReadings collected(sensors_.size());
     for (std::size_t count = 1;; ++count) {
@@ -240,9 +240,7 @@ class RecordedSource final : public CalibrationSource {
   }
 
  private:
-  Result<drivers::windlog::WindlogReader, Failure> opened() const {
-    return drivers::windlog::WindlogReader::open(file_);
-  }
+  Result<drivers::windlog::Reader, Failure> opened() const { return drivers::windlog::Reader::open(file_); }
 
   SensorConfigs sensors_;
   std::filesystem::path file_;
@@ -250,8 +248,8 @@ class RecordedSource final : public CalibrationSource {
 
 }  // namespace
 
-Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfigs sensors, const std::string& address,
-                                                                     const drivers::sensor::Clock& clock) {
+Result<std::unique_ptr<Source>, Failure> make_live_source(SensorConfigs sensors, const std::string& address,
+                                                          const drivers::sensor::Clock& clock) {
   auto client = connect_to_daemon(address);
   if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
 
@@ -281,8 +279,8 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
   return std::make_unique<DaemonSource>(std::move(sensors), address, clock);
 }
 
-Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(SensorConfigs sensors,
-                                                                         const std::filesystem::path& file) {
+Result<std::unique_ptr<Source>, Failure> make_recorded_source(SensorConfigs sensors,
+                                                              const std::filesystem::path& file) {
   auto source = std::make_unique<RecordedSource>(std::move(sensors), file);
   if (const auto checked = source->check(); !checked) return checked.error();
   return source;

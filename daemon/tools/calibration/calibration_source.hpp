@@ -18,7 +18,7 @@ namespace yuragi::daemon::tools::calibration {
 /// A reading before calibration, and its time in seconds since collecting began, or since the recording began.
 struct TimedReading {
   double time_s = 0.0;
-  wind::WindReading reading;
+  wind::Reading reading;
 };
 
 /// The readings collected from one sensor.
@@ -38,13 +38,13 @@ struct Stretch {
 };
 
 /// Where the readings for a calibration come from. They are raw: before any [sensor.calibration].
-class CalibrationSource {
+class Source {
  public:
   /// Called about four times a second while collecting live, and once at the end; of a recording at
   /// intervals, with the log time.
   using Progress = std::function<void(double elapsed_s, const CollectedReadings& so_far)>;
 
-  virtual ~CalibrationSource() = default;
+  virtual ~Source() = default;
 
   /// For a person: "the running daemon at 127.0.0.1:7410".
   virtual std::string description() const = 0;
@@ -58,12 +58,12 @@ class CalibrationSource {
 /// Live readings: from the running daemon at `address` if it has all of these sensors, else from the devices
 /// themselves. `sensors` and `clock` must outlive it. Fails if a daemon has the sensors, but does not send raw
 /// readings.
-Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(std::vector<const settings::SensorConfig*> sensors,
-                                                                     const std::string& address,
-                                                                     const drivers::sensor::Clock& clock);
+Result<std::unique_ptr<Source>, Failure> make_live_source(std::vector<const settings::SensorConfig*> sensors,
+                                                          const std::string& address,
+                                                          const drivers::sensor::Clock& clock);
 
 /// A recording. Fails if it cannot be read or has not all of these sensors.
-Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(
-    std::vector<const settings::SensorConfig*> sensors, const std::filesystem::path& file);
+Result<std::unique_ptr<Source>, Failure> make_recorded_source(std::vector<const settings::SensorConfig*> sensors,
+                                                              const std::filesystem::path& file);
 
 }  // namespace yuragi::daemon::tools::calibration

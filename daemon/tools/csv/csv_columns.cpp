@@ -62,7 +62,7 @@ std::optional<std::string> zone_in_name(std::string_view name) {
 /// One choice of columns.
 class ColumnChoice {
  public:
-  ColumnChoice(const std::vector<std::string>& header, const CsvColumnNames& given, const std::vector<std::string>& row)
+  ColumnChoice(const std::vector<std::string>& header, const ColumnNames& given, const std::vector<std::string>& row)
       : header_(header), given_(given), row_(row), is_taken_(header.size(), false) {
     for (const std::string& name : header) {
       names_.push_back(parse_name(name));
@@ -70,18 +70,18 @@ class ColumnChoice {
     }
   }
 
-  Result<CsvColumns, Failure> choose() {
+  Result<Columns, Failure> choose() {
     if (const auto done = take_given(); !done) return done.error();
     choose_time();
     if (columns_.time_parts.empty()) return checked();
     choose_wind();
-    for (const CsvRole role : kQuantityRoles) guess(role);
+    for (const Role role : kQuantityRoles) guess(role);
     take_exported();
     return checked();
   }
 
  private:
-  bool is_given(CsvRole role) const { return !given_[static_cast<std::size_t>(role)].empty(); }
+  bool is_given(Role role) const { return !given_[static_cast<std::size_t>(role)].empty(); }
 
   Result<void, Failure> take_given() {
     for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
@@ -91,14 +91,14 @@ class ColumnChoice {
       if (found == header_.end()) {
         return Failure{"there is no column \"" + given_[role] + "\"; the columns are " + listed(header_)};
       }
-      take(static_cast<CsvRole>(role), static_cast<std::size_t>(found - header_.begin()));
+      take(static_cast<Role>(role), static_cast<std::size_t>(found - header_.begin()));
     }
     return {};
   }
 
-  void take(CsvRole role, std::size_t index) {
-    CsvColumn column{.name = header_[index], .index = index, .unit = std::nullopt, .unit_source = {}};
-    const CsvName& name = names_[index];
+  void take(Role role, std::size_t index) {
+    Column column{.name = header_[index], .index = index, .unit = std::nullopt, .unit_source = {}};
+    const Name& name = names_[index];
     column.unit = find_unit(dimension_of(role), joined(name.unit_words));
     if (column.unit) column.unit_source = kByName;
     columns_.at(role) = column;
@@ -106,21 +106,21 @@ class ColumnChoice {
   }
 
   /// Takes the first column with one of a role's usual names. Of two directions it is the one in degrees.
-  void guess(CsvRole role) {
+  void guess(Role role) {
     if (columns_.at(role)) return;
-    if (role == CsvRole::kDirection && take_usual(role, true)) return;
+    if (role == Role::kDirection && take_usual(role, true)) return;
     if (take_usual(role, false)) return;
-    if (role == CsvRole::kGust) guess_greatest_speed();
+    if (role == Role::kGust) guess_greatest_speed();
   }
 
   /// "windspeedmph" is "windspeed" in mph.
-  bool take_usual(CsvRole role, bool is_unit_needed) {
+  bool take_usual(Role role, bool is_unit_needed) {
     for (const std::string_view usual : usual_names(role)) {
       for (std::size_t i = 0; i < header_.size(); ++i) {
         if (is_taken_[i]) continue;
-        const CsvName& name = names_[i];
-        const CsvStatistic wanted = role == CsvRole::kGust ? CsvStatistic::kMax : CsvStatistic::kMean;
-        if (name.statistic != CsvStatistic::kMean && name.statistic != wanted) continue;
+        const Name& name = names_[i];
+        const Statistic wanted = role == Role::kGust ? Statistic::kMax : Statistic::kMean;
+        if (name.statistic != Statistic::kMean && name.statistic != wanted) continue;
         if (name.stem == usual && (!is_unit_needed || !name.unit_words.empty())) {
           take(role, i);
           return true;
@@ -139,16 +139,16 @@ class ColumnChoice {
 
   /// A column of greatest speeds is one of gusts: WS_ms_Max.
   void guess_greatest_speed() {
-    for (const std::string_view usual : usual_names(CsvRole::kSpeed)) {
+    for (const std::string_view usual : usual_names(Role::kSpeed)) {
       for (std::size_t i = 0; i < header_.size(); ++i) {
-        const CsvName& name = names_[i];
-        if (!is_taken_[i] && name.statistic == CsvStatistic::kMax && name.stem == usual) return take(CsvRole::kGust, i);
+        const Name& name = names_[i];
+        if (!is_taken_[i] && name.statistic == Statistic::kMax && name.stem == usual) return take(Role::kGust, i);
       }
     }
   }
 
   /// Prefers a column that is marked as UTC to one that may be in local time.
-  std::optional<std::size_t> find_time_column(CsvRole role) const {
+  std::optional<std::size_t> find_time_column(Role role) const {
     for (const bool is_utc_wanted : {true, false}) {
       for (const std::string_view usual : usual_names(role)) {
         for (std::size_t i = 0; i < header_.size(); ++i) {
@@ -165,25 +165,24 @@ class ColumnChoice {
   }
 
   void choose_time() {
-    if (!columns_.at(CsvRole::kTime) && !columns_.at(CsvRole::kDate)) {
+    if (!columns_.at(Role::kTime) && !columns_.at(Role::kDate)) {
       if (choose_calendar_columns()) return;
       choose_time_by_name();
     }
-    if (!columns_.at(CsvRole::kTime) && columns_.at(CsvRole::kDate))
-      columns_.at(CsvRole::kTime).swap(columns_.at(CsvRole::kDate));
-    if (!columns_.at(CsvRole::kTime)) return;
-    if (columns_.at(CsvRole::kDate)) columns_.time_parts.push_back(columns_.at(CsvRole::kDate)->index);
-    columns_.time_parts.push_back(columns_.at(CsvRole::kTime)->index);
+    if (!columns_.at(Role::kTime) && columns_.at(Role::kDate)) columns_.at(Role::kTime).swap(columns_.at(Role::kDate));
+    if (!columns_.at(Role::kTime)) return;
+    if (columns_.at(Role::kDate)) columns_.time_parts.push_back(columns_.at(Role::kDate)->index);
+    columns_.time_parts.push_back(columns_.at(Role::kTime)->index);
     for (const std::size_t part : columns_.time_parts) read_time_name(header_[part]);
   }
 
   void choose_time_by_name() {
-    const auto moment = find_time_column(CsvRole::kTime);
-    const auto date = find_time_column(CsvRole::kDate);
+    const auto moment = find_time_column(Role::kTime);
+    const auto date = find_time_column(Role::kDate);
     if (!moment) {
       // The index of a table is written without a name.
       const bool is_index = !header_.empty() && is_any_of(lower(header_[0]), {"", "index", "unnamed: 0"});
-      if (is_index && has_date(first_value(0))) take(CsvRole::kTime, 0);
+      if (is_index && has_date(first_value(0))) take(Role::kTime, 0);
       return;
     }
     std::optional<std::size_t> clock;
@@ -199,11 +198,11 @@ class ColumnChoice {
     const bool is_split =
         date && clock && !has_date(first_value(*clock)) && first_value(*date).find(':') == std::string_view::npos;
     if (is_split) {
-      take(CsvRole::kDate, *date);
-      take(CsvRole::kTime, *clock);
+      take(Role::kDate, *date);
+      take(Role::kTime, *clock);
       return;
     }
-    take(CsvRole::kTime,
+    take(Role::kTime,
          date && *moment != *date && !row_.empty() && !has_date(first_value(*moment)) && has_date(first_value(*date))
              ? *date
              : *moment);
@@ -225,7 +224,7 @@ class ColumnChoice {
              is_any_of(joined(words_of(header_[begin + count])), kNames[count]))
         ++count;
       if (count < 4) continue;
-      take(CsvRole::kTime, begin);
+      take(Role::kTime, begin);
       for (std::size_t i = begin; i < begin + count; ++i) {
         is_taken_[i] = true;
         columns_.time_parts.push_back(i);
@@ -248,14 +247,14 @@ class ColumnChoice {
 
   /// Components are searched for only if there is no speed, and vice versa.
   void choose_wind() {
-    guess(CsvRole::kGust);
-    const bool wants_components = is_given(CsvRole::kU) || is_given(CsvRole::kV);
-    if (!wants_components) guess(CsvRole::kSpeed);
-    if (columns_.at(CsvRole::kSpeed)) {
-      guess(CsvRole::kDirection);
+    guess(Role::kGust);
+    const bool wants_components = is_given(Role::kU) || is_given(Role::kV);
+    if (!wants_components) guess(Role::kSpeed);
+    if (columns_.at(Role::kSpeed)) {
+      guess(Role::kDirection);
     } else {
-      guess(CsvRole::kU);
-      guess(CsvRole::kV);
+      guess(Role::kU);
+      guess(Role::kV);
     }
   }
 
@@ -265,18 +264,18 @@ class ColumnChoice {
     const auto index_of = [this](std::string_view name) {
       return static_cast<std::size_t>(std::ranges::find(header_, name) - header_.begin());
     };
-    if (!is_given(CsvRole::kTime)) take(CsvRole::kElapsed, index_of("time_s"));
-    take(CsvRole::kSensor, index_of("sensor"));
-    take(CsvRole::kQuality, index_of("quality"));
+    if (!is_given(Role::kTime)) take(Role::kElapsed, index_of("time_s"));
+    take(Role::kSensor, index_of("sensor"));
+    take(Role::kQuality, index_of("quality"));
   }
 
-  Result<CsvColumns, Failure> checked() {
+  Result<Columns, Failure> checked() {
     if (columns_.time_parts.empty()) {
       return Failure{"no column looks like a time; the columns are " + listed(header_) +
                      "; name it with --time COLUMN (and --date COLUMN, if the date is in another), or skip lines "
                      "before the header with --skip N"};
     }
-    if (!columns_.at(CsvRole::kSpeed) && (!columns_.at(CsvRole::kU) || !columns_.at(CsvRole::kV))) {
+    if (!columns_.at(Role::kSpeed) && (!columns_.at(Role::kU) || !columns_.at(Role::kV))) {
       return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header_) +
                      "; name it with --speed COLUMN, or --u COLUMN --v COLUMN"};
     }
@@ -293,18 +292,18 @@ class ColumnChoice {
   }
 
   const std::vector<std::string>& header_;
-  const CsvColumnNames& given_;
+  const ColumnNames& given_;
   const std::vector<std::string>& row_;
   std::vector<bool> is_taken_;
-  std::vector<CsvName> names_;
+  std::vector<Name> names_;
   std::vector<std::string> time_stems_;
-  CsvColumns columns_;
+  Columns columns_;
 };
 
 }  // namespace
 
-Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given,
-                                           const std::vector<std::string>& row) {
+Result<Columns, Failure> choose_columns(const std::vector<std::string>& header, const ColumnNames& given,
+                                        const std::vector<std::string>& row) {
   return ColumnChoice(header, given, row).choose();
 }
 

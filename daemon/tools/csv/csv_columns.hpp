@@ -20,34 +20,34 @@ inline constexpr std::string_view kExportedHeader = "utc,time_s,sensor,speed_m_s
 inline constexpr std::array<std::string_view, 3> kQualityWords = {"good", "uncertain", "simulated"};
 
 /// A column that was found.
-struct CsvColumn {
-  std::string name;             ///< as in the header
-  std::size_t index = 0;        ///< in the header, from 0
-  std::optional<CsvUnit> unit;  ///< of its numbers; empty: not known
-  std::string unit_source;      ///< where that is from: "by its name"
+struct Column {
+  std::string name;          ///< as in the header
+  std::size_t index = 0;     ///< in the header, from 0
+  std::optional<Unit> unit;  ///< of its numbers; empty: not known
+  std::string unit_source;   ///< where that is from: "by its name"
 };
 
 /// The columns of a file.
-struct CsvColumns {
-  std::array<std::optional<CsvColumn>, kCsvRoleCount> by_role;
+struct Columns {
+  std::array<std::optional<Column>, kCsvRoleCount> by_role;
   /// Those that a time is put together from, with a blank between them: one, a date and a time, or year, month, day,
   /// hour, minute, second.
   std::vector<std::size_t> time_parts;
   std::optional<std::string> zone;   ///< in which the times are, by the name of their column
   std::optional<bool> is_day_first;  ///< of dates, by the name of their column ("DATE (MM/DD/YYYY)")
   std::vector<std::string> unused;   ///< the names of those that have no role
-  const std::optional<CsvColumn>& at(CsvRole role) const { return by_role[static_cast<std::size_t>(role)]; }
-  std::optional<CsvColumn>& at(CsvRole role) { return by_role[static_cast<std::size_t>(role)]; }
+  const std::optional<Column>& at(Role role) const { return by_role[static_cast<std::size_t>(role)]; }
+  std::optional<Column>& at(Role role) { return by_role[static_cast<std::size_t>(role)]; }
 };
 
 /// The names that the user gave, by role; empty if none.
-using CsvColumnNames = std::array<std::string, kCsvRoleCount>;
+using ColumnNames = std::array<std::string, kCsvRoleCount>;
 
 /// Finds the columns: by the given names, ignoring case, and otherwise by the names that loggers commonly use. `row`:
 /// the fields of the first row, if there is one: they settle whether a time needs its date from another column, and
 /// whether a column without a name has times. Fails, with a list of the columns, without a time, without a speed or
 /// both u and v, or with two columns of one name.
-Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given,
-                                           const std::vector<std::string>& row = {});
+Result<Columns, Failure> choose_columns(const std::vector<std::string>& header, const ColumnNames& given,
+                                        const std::vector<std::string>& row = {});
 
 }  // namespace yuragi::daemon::tools::csv

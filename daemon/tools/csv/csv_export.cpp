@@ -28,9 +28,9 @@ void append_row(std::string& text, const drivers::windlog::LoggedReading& logged
 
 }  // namespace
 
-Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
-                                            std::FILE* out, const std::function<void(std::size_t)>& progress) {
-  CsvExportReport report;
+Result<ExportReport, Failure> export_csv(drivers::windlog::Reader& reader, const ExportRange& range, std::FILE* out,
+                                         const std::function<void(std::size_t)>& progress) {
+  ExportReport report;
   std::string text(kExportedHeader);
   text += '\n';
   const auto flush = [&]() -> Result<void, Failure> {

@@ -11,12 +11,12 @@
 namespace yuragi::daemon::tools::csv {
 
 /// The part of a recording to export, in log time: from `from` on, and before `to`.
-struct CsvExportRange {
+struct ExportRange {
   Nanoseconds from{0};
   Nanoseconds to = Nanoseconds::max();
 };
 
-struct CsvExportReport {
+struct ExportReport {
   std::size_t written = 0;  ///< readings
   std::size_t rows = 0;     ///< lines of the table without its header: fewer than readings if they are means
   std::size_t skipped = 0;  ///< rows of the recording that are not valid readings
@@ -28,7 +28,7 @@ struct CsvExportReport {
 ///
 /// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or if
 /// `out` cannot be written to. Thread-safe: yes, with separate readers.
-Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
-                                            std::FILE* out, const std::function<void(std::size_t)>& progress = {});
+Result<ExportReport, Failure> export_csv(drivers::windlog::Reader& reader, const ExportRange& range, std::FILE* out,
+                                         const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace yuragi::daemon::tools::csv

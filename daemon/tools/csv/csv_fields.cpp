@@ -9,9 +9,9 @@
 
 namespace yuragi::daemon::tools::csv {
 
-Result<CsvRowSplitter, Failure> CsvRowSplitter::make(const CsvLayout& layout, const CsvImportOptions& options) {
-  CsvRowSplitter splitter(layout);
-  for (const CsvCondition& condition : options.conditions) {
+Result<RowSplitter, Failure> RowSplitter::make(const Layout& layout, const ImportOptions& options) {
+  RowSplitter splitter(layout);
+  for (const Condition& condition : options.conditions) {
     const auto found = std::ranges::find_if(
         layout.header, [&](const std::string& name) { return lower(name) == lower(condition.column); });
     if (found == layout.header.end()) {
@@ -23,7 +23,7 @@ Result<CsvRowSplitter, Failure> CsvRowSplitter::make(const CsvLayout& layout, co
   return splitter;
 }
 
-Result<bool, Failure> CsvRowSplitter::split(std::span<char> line, CsvFields& fields) {
+Result<bool, Failure> RowSplitter::split(std::span<char> line, Fields& fields) {
   if (!split_csv_line(line, layout_.delimiter, all_fields_)) return Failure{"a quote that is not closed"};
   const std::size_t count = layout_.header.size();
   if (all_fields_.size() < count) return Failure{"fewer fields than the header"};

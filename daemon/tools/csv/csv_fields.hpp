@@ -15,25 +15,25 @@
 namespace yuragi::daemon::tools::csv {
 
 /// The fields of a row that have a role.
-struct CsvFields {
+struct Fields {
   std::array<std::optional<std::string_view>, kCsvRoleCount> by_role;  ///< none for a missing column
   std::string time;                                                    ///< all of its columns, with blanks between them
-  const std::optional<std::string_view>& at(CsvRole role) const { return by_role[static_cast<std::size_t>(role)]; }
+  const std::optional<std::string_view>& at(Role role) const { return by_role[static_cast<std::size_t>(role)]; }
 };
 
 /// Takes the rows of a file apart. Thread-safe: no.
-class CsvRowSplitter {
+class RowSplitter {
  public:
   /// Fails if a condition names a column that is missing.
-  static Result<CsvRowSplitter, Failure> make(const CsvLayout& layout, const CsvImportOptions& options);
+  static Result<RowSplitter, Failure> make(const Layout& layout, const ImportOptions& options);
 
   /// The fields of a line, which is changed and must outlive them; false if a condition does not hold.
-  Result<bool, Failure> split(std::span<char> line, CsvFields& fields);
+  Result<bool, Failure> split(std::span<char> line, Fields& fields);
 
  private:
-  CsvRowSplitter(const CsvLayout& layout) : layout_(layout) {}
+  RowSplitter(const Layout& layout) : layout_(layout) {}
 
-  const CsvLayout& layout_;
+  const Layout& layout_;
   std::vector<std::pair<std::size_t, std::string>> conditions_;  ///< column and text
   std::vector<std::string_view> all_fields_;
 };

@@ -18,11 +18,11 @@ namespace {
 /// One import, once the columns and units are known.
 class Import {
  public:
-  Import(const std::string& name, const CsvImportOptions& options, const CsvSinks& sinks, CsvRowSplitter splitter,
-         CsvRowReader rows)
+  Import(const std::string& name, const ImportOptions& options, const Sinks& sinks, RowSplitter splitter,
+         RowReader rows)
       : name_(name), options_(options), sinks_(sinks), splitter_(std::move(splitter)), rows_(std::move(rows)) {}
 
-  Result<CsvImportReport, Failure> run(CsvLines& lines) {
+  Result<ImportReport, Failure> run(Lines& lines) {
     while (lines.next()) {
       if (const auto done = take_line(lines); !done) return done.error();
     }
@@ -31,7 +31,7 @@ class Import {
   }
 
   /// The same from the last line to the first.
-  Result<CsvImportReport, Failure> run_backward(CsvLines& lines) {
+  Result<ImportReport, Failure> run_backward(Lines& lines) {
     struct Place {
       std::streamoff offset;
       std::size_t number_before;
@@ -57,7 +57,7 @@ class Import {
   }
 
  private:
-  Result<void, Failure> take_line(CsvLines& lines) {
+  Result<void, Failure> take_line(Lines& lines) {
     const std::span<char> line = lines.line();
     const bool is_again = std::ranges::equal(line, last_line_);
     last_line_.assign(line.begin(), line.end());
@@ -73,7 +73,7 @@ class Import {
       return take_row();
     }();
     if (taken) return {};
-    if (report_.first_refusals.size() < CsvImportReport::kMaxRefusalsListed) {
+    if (report_.first_refusals.size() < ImportReport::kMaxRefusalsListed) {
       report_.first_refusals.push_back(name_ + ":" + std::to_string(lines.number()) + ": " + taken.error().message);
     }
     if (options_.strict) return Failure{report_.first_refusals.front()};
@@ -83,7 +83,7 @@ class Import {
   Result<void, Failure> take_row() {
     const auto row = rows_.read(fields_);
     if (!row) return row.error();
-    const std::string_view sensor = fields_.at(CsvRole::kSensor).value_or(options_.sensor);
+    const std::string_view sensor = fields_.at(Role::kSensor).value_or(options_.sensor);
     sinks_.reading(sensor, row->reading);
     ++report_.taken;
     if (!row->quantities) return {};
@@ -92,7 +92,7 @@ class Import {
     return {};
   }
 
-  CsvImportReport finish() {
+  ImportReport finish() {
     report_.columns = rows_.describe();
     for (std::string& note : rows_.notes()) report_.notes.push_back(std::move(note));
     if (repeated_ > 0)
@@ -101,26 +101,26 @@ class Import {
   }
 
   const std::string& name_;
-  const CsvImportOptions& options_;
-  const CsvSinks& sinks_;
-  CsvRowSplitter splitter_;
-  CsvRowReader rows_;
-  CsvFields fields_;
+  const ImportOptions& options_;
+  const Sinks& sinks_;
+  RowSplitter splitter_;
+  RowReader rows_;
+  Fields fields_;
   std::string last_line_;
   std::size_t repeated_ = 0;
-  CsvImportReport report_;
+  ImportReport report_;
 };
 
 }  // namespace
 
-Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
-                                            const CsvSinks& sinks) {
-  CsvInput input(in);
+Result<ImportReport, Failure> import_csv(std::istream& in, const std::string& name, const ImportOptions& options,
+                                         const Sinks& sinks) {
+  Input input(in);
   return import_csv(input, name, options, sinks);
 }
 
-Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& name, const CsvImportOptions& options,
-                                            const CsvSinks& sinks) {
+Result<ImportReport, Failure> import_csv(Input& input, const std::string& name, const ImportOptions& options,
+                                         const Sinks& sinks) {
   const auto failed = [&name](const Failure& failure) { return Failure{name + ": " + failure.message, failure.kind}; };
   const auto head = first_lines(input, name);
   if (!head) return head.error();
@@ -138,11 +138,11 @@ Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& 
     }
   }
 
-  auto splitter = CsvRowSplitter::make(*layout, options);
+  auto splitter = RowSplitter::make(*layout, options);
   if (!splitter) return failed(splitter.error());
-  auto rows = CsvRowReader::make(*layout, *survey, options);
+  auto rows = RowReader::make(*layout, *survey, options);
   if (!rows) return failed(rows.error());
-  CsvLines lines(input.second_pass(), options.comment);
+  Lines lines(input.second_pass(), options.comment);
   lines.begin_at(layout->first_row);
   Import import(name, options, sinks, std::move(*splitter), std::move(*rows));
   auto report = survey->is_newest_first ? import.run_backward(lines) : import.run(lines);

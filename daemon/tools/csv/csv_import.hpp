@@ -15,7 +15,7 @@
 
 namespace yuragi::daemon::tools::csv {
 
-struct CsvImportReport {
+struct ImportReport {
   std::vector<std::string> columns;  ///< how each column was understood, a line each
   std::vector<std::string> notes;    ///< what was settled, guessed or left out besides, a line each
   std::size_t rows = 0;              ///< below the header, without those that a condition leaves out
@@ -28,8 +28,8 @@ struct CsvImportReport {
 };
 
 /// What takes the readings, each with the name of its sensor. May throw, which ends the import.
-struct CsvSinks {
-  std::function<void(std::string_view sensor, const wind::WindReading& reading)> reading;
+struct Sinks {
+  std::function<void(std::string_view sensor, const wind::Reading& reading)> reading;
   /// After the reading of the same time; may be empty.
   std::function<void(std::string_view sensor, const wind::StationQuantities& quantities)> quantities = {};
 };
@@ -39,13 +39,13 @@ struct CsvSinks {
 /// from its end. A decimal comma is understood if the delimiter is another character.
 ///
 /// `name` is the file name in messages. The input may contain any bytes; it is read twice if it can be rewound,
-/// and is otherwise kept as far as CsvInput::kMaxKept. Memory does not depend on the file's length, except for 24
+/// and is otherwise kept as far as Input::kMaxKept. Memory does not depend on the file's length, except for 24
 /// bytes a row of a file with its newest row first. Fails if the header, the dates or the units are not understood (the
 /// message names the option that helps), if a line is longer than kMaxLine, or at the first refused row if
 /// `strict`. Thread-safe: yes, with separate streams.
-Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& name, const CsvImportOptions& options,
-                                            const CsvSinks& sinks);
-Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
-                                            const CsvSinks& sinks);
+Result<ImportReport, Failure> import_csv(Input& input, const std::string& name, const ImportOptions& options,
+                                         const Sinks& sinks);
+Result<ImportReport, Failure> import_csv(std::istream& in, const std::string& name, const ImportOptions& options,
+                                         const Sinks& sinks);
 
 }  // namespace yuragi::daemon::tools::csv

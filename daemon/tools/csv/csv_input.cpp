@@ -47,7 +47,7 @@ class TextThenStream : public std::streambuf {
 
 }  // namespace
 
-CsvInput::CsvInput(std::istream& in) : in_(in), begin_(in.tellg()) {
+Input::Input(std::istream& in) : in_(in), begin_(in.tellg()) {
   if (begin_ != std::streampos(-1)) return;
   in_.clear();
   constexpr std::size_t kBlock = std::size_t{1} << 16;
@@ -60,7 +60,7 @@ CsvInput::CsvInput(std::istream& in) : in_(in), begin_(in.tellg()) {
   is_whole_ = in_.eof();
 }
 
-std::istream& CsvInput::first_pass() {
+std::istream& Input::first_pass() {
   if (begin_ != std::streampos(-1)) {
     in_.clear();
     in_.seekg(begin_);
@@ -72,7 +72,7 @@ std::istream& CsvInput::first_pass() {
   return *stream_;
 }
 
-std::istream& CsvInput::second_pass() {
+std::istream& Input::second_pass() {
   if (is_whole_) return first_pass();
   kept_buffer_.reset();
   joined_ = std::make_unique<TextThenStream>(kept_, in_);
@@ -84,9 +84,9 @@ Failure too_long_line(const std::string& name, std::size_t number) {
   return {name + ":" + std::to_string(number) + ": a line is longer than a megabyte; is it a CSV file?"};
 }
 
-Result<std::vector<std::string>, Failure> first_lines(CsvInput& input, const std::string& name) {
+Result<std::vector<std::string>, Failure> first_lines(Input& input, const std::string& name) {
   std::vector<std::string> texts;
-  CsvLines lines(input.first_pass(), 0);
+  Lines lines(input.first_pass(), 0);
   constexpr std::size_t kMaxLines = 400;
   constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
   for (std::size_t bytes = 0; texts.size() < kMaxLines && bytes < kMaxBytes && lines.next();) {

@@ -13,12 +13,12 @@ namespace yuragi::daemon::tools::csv {
 
 /// A stream that is read twice: first to see what is in it, then for its rows. One that cannot go back (a pipe) is kept
 /// as far as kMaxKept, and seen as far as that. Thread-safe: no.
-class CsvInput {
+class Input {
  public:
   static constexpr std::size_t kMaxKept = std::size_t{32} << 20;
 
   /// `in` must outlive this.
-  explicit CsvInput(std::istream& in);
+  explicit Input(std::istream& in);
 
   /// The stream from its beginning, as far as it can be seen: all of it, or its first whole lines.
   std::istream& first_pass();
@@ -39,7 +39,7 @@ class CsvInput {
 
 /// The first lines of an input, comments and empty ones too, as many as a header is looked for in. Fails if one of
 /// them is too long.
-Result<std::vector<std::string>, Failure> first_lines(CsvInput& input, const std::string& name);
+Result<std::vector<std::string>, Failure> first_lines(Input& input, const std::string& name);
 
 /// The failure of a file with a line that is too long.
 Failure too_long_line(const std::string& name, std::size_t number);

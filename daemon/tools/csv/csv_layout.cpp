@@ -34,7 +34,7 @@ std::string_view uncommented(std::string_view line, char comment) {
 /// Zone and unit of speeds that the lines before a header name.
 struct Preamble {
   std::optional<std::string> zone;
-  std::optional<CsvUnit> speed_unit;
+  std::optional<Unit> speed_unit;
 };
 
 void read_key(Preamble& preamble, std::string_view key, std::string_view value) {
@@ -55,14 +55,14 @@ void read_key(Preamble& preamble, std::string_view key, std::string_view value) 
       zone = (has_sign ? zone.substr(0, 1) : "+") + (zone.size() - (has_sign ? 1 : 0) < 2 ? "0" : "") +
              zone.substr(has_sign ? 1 : 0);
     }
-    if (CsvZone::parse(zone)) preamble.zone = zone;
+    if (Zone::parse(zone)) preamble.zone = zone;
   } else if (stem.starts_with("windspeed") || stem == "windunit") {
     if (const auto unit = find_speed_unit(value)) preamble.speed_unit = unit;
   }
 }
 
 /// "FH : hourly mean wind speed (in 0.1 m/s)" gives the unit of a column.
-void read_legend(CsvColumns& columns, std::string_view key, std::string_view text) {
+void read_legend(Columns& columns, std::string_view key, std::string_view text) {
   for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
     auto& column = columns.by_role[role];
     if (!column || lower(column->name) != lower(without_blanks(key))) continue;
@@ -71,7 +71,7 @@ void read_legend(CsvColumns& columns, std::string_view key, std::string_view tex
     std::string_view unit = text.substr(open + 1);
     unit = unit.substr(0, unit.find_first_of(")]"));
     if (unit.starts_with("in ")) unit.remove_prefix(3);
-    if (const auto found = find_unit(dimension_of(static_cast<CsvRole>(role)), unit)) {
+    if (const auto found = find_unit(dimension_of(static_cast<Role>(role)), unit)) {
       column->unit = found;
       column->unit_source = "from the lines before the header";
     }
@@ -80,10 +80,10 @@ void read_legend(CsvColumns& columns, std::string_view key, std::string_view tex
 
 class LayoutSearch {
  public:
-  LayoutSearch(const std::vector<std::string>& lines, const CsvImportOptions& options)
+  LayoutSearch(const std::vector<std::string>& lines, const ImportOptions& options)
       : lines_(lines), options_(options) {}
 
-  Result<CsvLayout, Failure> find() const {
+  Result<Layout, Failure> find() const {
     const std::size_t begin = next_line(options_.skip.value_or(0), false);
     if (begin >= lines_.size()) return Failure{"has no header line"};
     if (!options_.header.empty()) return layout_of_names(begin);
@@ -128,9 +128,9 @@ class LayoutSearch {
     return {fields.begin(), fields.end()};
   }
 
-  Result<CsvLayout, Failure> layout_at(std::size_t i, std::vector<std::string> header, bool is_comment_header) const {
+  Result<Layout, Failure> layout_at(std::size_t i, std::vector<std::string> header, bool is_comment_header) const {
     if (header.empty()) return Failure{"the header has a quote that is not closed"};
-    CsvLayout layout;
+    Layout layout;
     const std::string_view text = is_comment_header ? uncommented(lines_[i], options_.comment) : lines_[i];
     layout.delimiter = delimiter(text);
     layout.header = std::move(header);
@@ -163,8 +163,8 @@ class LayoutSearch {
   }
 
   /// A file without a header.
-  Result<CsvLayout, Failure> layout_of_names(std::size_t begin) const {
-    CsvLayout layout;
+  Result<Layout, Failure> layout_of_names(std::size_t begin) const {
+    Layout layout;
     layout.delimiter = delimiter(lines_[begin]);
     layout.header = options_.header;
     layout.row = split(lines_[begin], layout.delimiter);
@@ -176,7 +176,7 @@ class LayoutSearch {
   }
 
   /// A header over two lines: "Wind" above "Speed".
-  std::optional<CsvLayout> layout_of_two(std::size_t i) const {
+  std::optional<Layout> layout_of_two(std::size_t i) const {
     if (i == 0 || is_comment(lines_[i - 1])) return std::nullopt;
     const char delimiter_here = delimiter(lines_[i]);
     const std::vector<std::string> above = split(lines_[i - 1], delimiter_here);
@@ -190,19 +190,19 @@ class LayoutSearch {
     return std::move(*found);
   }
 
-  static void read_units(CsvLayout& layout, const std::vector<std::string>& row) {
+  static void read_units(Layout& layout, const std::vector<std::string>& row) {
     if (row.size() != layout.header.size()) return;
     for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
       auto& column = layout.columns.by_role[role];
       if (!column) continue;
-      if (const auto unit = find_unit(dimension_of(static_cast<CsvRole>(role)), row[column->index])) {
+      if (const auto unit = find_unit(dimension_of(static_cast<Role>(role)), row[column->index])) {
         column->unit = unit;
         column->unit_source = "from the row of units";
       }
     }
   }
 
-  void read_preamble(CsvLayout& layout, std::size_t header) const {
+  void read_preamble(Layout& layout, std::size_t header) const {
     Preamble preamble;
     for (std::size_t i = 0; i < header; ++i) {
       const std::string_view line = uncommented(lines_[i], options_.comment);
@@ -223,7 +223,7 @@ class LayoutSearch {
     }
     if (!layout.columns.zone) layout.columns.zone = preamble.zone;
     if (!preamble.speed_unit) return;
-    for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust, CsvRole::kU, CsvRole::kV}) {
+    for (const Role role : {Role::kSpeed, Role::kGust, Role::kU, Role::kV}) {
       auto& column = layout.columns.at(role);
       if (!column || column->unit) continue;
       column->unit = preamble.speed_unit;
@@ -251,12 +251,12 @@ class LayoutSearch {
   }
 
   const std::vector<std::string>& lines_;
-  const CsvImportOptions& options_;
+  const ImportOptions& options_;
 };
 
 }  // namespace
 
-Result<CsvLayout, Failure> find_layout(const std::vector<std::string>& lines, const CsvImportOptions& options) {
+Result<Layout, Failure> find_layout(const std::vector<std::string>& lines, const ImportOptions& options) {
   return LayoutSearch(lines, options).find();
 }
 

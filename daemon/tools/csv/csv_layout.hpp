@@ -10,18 +10,18 @@
 namespace yuragi::daemon::tools::csv {
 
 /// Where the table of a CSV file is, and what its columns are.
-struct CsvLayout {
+struct Layout {
   char delimiter = ',';
   std::vector<std::string> header;
   std::size_t first_row = 0;       ///< the number of its line, from 1
   std::vector<std::string> row;    ///< the first one's fields
-  CsvColumns columns;              ///< with units and zone from name, row of units or preamble
+  Columns columns;                 ///< with units and zone from name, row of units or preamble
   std::vector<std::string> notes;  ///< what was understood of the lines around the header
 };
 
 /// Finds the header in the first lines of a file: the first line that names a time and a wind; else a line and the one
 /// above it, together (Davis); else a comment (KNMI, NDBC). Rows of units below the header, and a preamble above it
 /// that names a zone or a unit, are understood. Fails as choose_columns() does. Thread-safe: yes.
-Result<CsvLayout, Failure> find_layout(const std::vector<std::string>& lines, const CsvImportOptions& options);
+Result<Layout, Failure> find_layout(const std::vector<std::string>& lines, const ImportOptions& options);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -27,9 +27,9 @@ std::string_view plain_field(std::span<char> field) {
 
 }  // namespace
 
-CsvLines::CsvLines(std::istream& in, char comment) : in_(in), comment_(comment), buffer_(kMaxLine + 1) {}
+Lines::Lines(std::istream& in, char comment) : in_(in), comment_(comment), buffer_(kMaxLine + 1) {}
 
-bool CsvLines::next() {
+bool Lines::next() {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   while (in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
     // gcount() includes the line end, which the last line may lack.
@@ -49,13 +49,13 @@ bool CsvLines::next() {
   return false;
 }
 
-void CsvLines::go_to(std::streamoff place, std::size_t number_before) {
+void Lines::go_to(std::streamoff place, std::size_t number_before) {
   in_.clear();
   in_.seekg(place);
   number_ = number_before;
 }
 
-std::streamoff CsvLines::place() const {
+std::streamoff Lines::place() const {
   return in_.eof() ? -1 : static_cast<std::streamoff>(in_.tellg());
 }
 

@@ -11,12 +11,12 @@ namespace yuragi::daemon::tools::csv {
 
 /// Reads the lines of a CSV file one by one: skips empty ones and comments, and removes line ends ("\n" or "\r\n") and
 /// byte order mark. Thread-safe: no.
-class CsvLines {
+class Lines {
  public:
   static constexpr std::size_t kMaxLine = 1 << 20;
 
   /// `in` must outlive this. `comment`: what comment lines begin with; 0: there are none.
-  CsvLines(std::istream& in, char comment);
+  Lines(std::istream& in, char comment);
 
   /// Goes to the next line; false if there is none, or if it is longer than kMaxLine.
   bool next();

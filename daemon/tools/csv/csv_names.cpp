@@ -19,9 +19,9 @@ std::string_view without_serial_numbers(std::string_view name) {
 }
 
 bool is_any_unit(std::string_view text) {
-  for (const CsvDimension dimension :
-       {CsvDimension::kTime, CsvDimension::kSpeed, CsvDimension::kDirection, CsvDimension::kTemperature,
-        CsvDimension::kPressure, CsvDimension::kHumidity, CsvDimension::kRain, CsvDimension::kRainRate}) {
+  for (const Dimension dimension :
+       {Dimension::kTime, Dimension::kSpeed, Dimension::kDirection, Dimension::kTemperature, Dimension::kPressure,
+        Dimension::kHumidity, Dimension::kRain, Dimension::kRainRate}) {
     if (find_unit(dimension, text)) return true;
   }
   return false;
@@ -29,21 +29,21 @@ bool is_any_unit(std::string_view text) {
 
 /// Takes the words of a statistic off the end of a name. Campbell's: WVT and WVc are wind vectors, D1 their direction,
 /// S the mean speed, SD1 the deviation.
-CsvStatistic take_statistic(std::vector<std::string>& words) {
+Statistic take_statistic(std::vector<std::string>& words) {
   static constexpr std::array<std::string_view, 9> kMeans = {"avg", "average", "mean", "ave", "wvt",
                                                              "wvc", "d1",      "inst", "act"};
   static constexpr std::array<std::string_view, 4> kMaxima = {"max", "maximum", "peak", "smm"};
   static constexpr std::array<std::string_view, 9> kOthers = {"min", "minimum", "std", "stddev", "sd",
                                                               "sd1", "tmx",     "tmn", "lull"};
-  CsvStatistic statistic = CsvStatistic::kMean;
+  Statistic statistic = Statistic::kMean;
   bool is_vector = false;
   while (words.size() > 1) {
     const std::string& last = words.back();
     const auto is_in = [&last](const auto& names) { return std::ranges::find(names, last) != names.end(); };
     if (is_in(kMaxima)) {
-      statistic = CsvStatistic::kMax;
+      statistic = Statistic::kMax;
     } else if (is_in(kOthers)) {
-      statistic = CsvStatistic::kOther;
+      statistic = Statistic::kOther;
     } else if (!is_in(kMeans) && !(is_vector && last == "s")) {
       break;
     }
@@ -53,7 +53,7 @@ CsvStatistic take_statistic(std::vector<std::string>& words) {
   return statistic;
 }
 
-void take_unit(std::vector<std::string>& words, CsvName& name) {
+void take_unit(std::vector<std::string>& words, Name& name) {
   // The longest unit at the end: m_s_1 before s_1.
   for (std::size_t count = std::min<std::size_t>(4, words.empty() ? 0 : words.size() - 1); count > 0; --count) {
     const std::span<const std::string> end = std::span(words).last(count);
@@ -74,14 +74,14 @@ bool is_height(std::string_view word) {
 
 }  // namespace
 
-CsvName parse_name(std::string_view text) {
-  CsvName name;
+Name parse_name(std::string_view text) {
+  Name name;
   std::vector<std::string> words = words_of(without_serial_numbers(text));
   // The statistic stands before the unit or behind it: WS_ms_Avg, wind_speed_mean_m_s.
   name.statistic = take_statistic(words);
   take_unit(words, name);
-  const CsvStatistic before = take_statistic(words);
-  if (name.statistic == CsvStatistic::kMean) name.statistic = before;
+  const Statistic before = take_statistic(words);
+  if (name.statistic == Statistic::kMean) name.statistic = before;
   // A height is not part of the name.
   std::erase_if(words, is_height);
   name.stem = joined(words);

@@ -8,19 +8,19 @@
 namespace yuragi::daemon::tools::csv {
 
 /// Which statistic of an interval a column is, by its name.
-enum class CsvStatistic : std::uint8_t {
+enum class Statistic : std::uint8_t {
   kMean,   ///< or not stated
   kMax,    ///< the greatest
   kOther,  ///< the least, a standard deviation: not used
 };
 
 /// The parts of the name of a column: "wind_speed_10m_Max (km/h)" is the greatest "windspeed", and ends with "km", "h".
-struct CsvName {
+struct Name {
   std::string stem;                     ///< its words without statistic, height and what is in unit_words
   std::vector<std::string> unit_words;  ///< at its end, if they are a unit of any dimension
-  CsvStatistic statistic = CsvStatistic::kMean;
+  Statistic statistic = Statistic::kMean;
 };
 
-CsvName parse_name(std::string_view name);
+Name parse_name(std::string_view name);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -8,9 +8,9 @@
 
 namespace yuragi::daemon::tools::csv {
 
-Result<CsvExportReport, Failure> export_quantities_csv(const drivers::windlog::WindlogReader& reader,
-                                                       const CsvExportRange& range, std::FILE* out) {
-  CsvExportReport report;
+Result<ExportReport, Failure> export_quantities_csv(const drivers::windlog::Reader& reader, const ExportRange& range,
+                                                    std::FILE* out) {
+  ExportReport report;
   Result<void, Failure> written;  // the first failure stays
   std::string text = "time_utc,sensor";
   for (const wind::StationQuantity& each : wind::kStationQuantities) text.append(",").append(each.name);

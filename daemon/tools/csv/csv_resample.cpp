@@ -14,8 +14,6 @@
 namespace yuragi::daemon::tools::csv {
 namespace {
 
-using drivers::windlog::WindlogReader;
-
 /// Vectors that cancel out to less than this part of their lengths have no direction.
 constexpr double kMinPartOfDirection = 1e-9;
 
@@ -24,10 +22,10 @@ struct Block {
   std::size_t count = 0;
   double speed_sum_m_s = 0.0;
   double directed_speed_sum_m_s = 0.0;
-  wind::WindVector sum{};
+  wind::Vector sum{};
   double gust_m_s = 0.0;
 
-  void add(const wind::WindReading& reading) {
+  void add(const wind::Reading& reading) {
     ++count;
     speed_sum_m_s += reading.speed_m_s;
     gust_m_s = std::max({gust_m_s, reading.speed_m_s, reading.gust_m_s.value_or(0.0)});
@@ -45,7 +43,7 @@ struct Block {
 
 /// The sensors' names in the order of the recording, and the name of each of its sensors.
 struct Names {
-  explicit Names(const WindlogReader& reader) {
+  explicit Names(const drivers::windlog::Reader& reader) {
     std::map<std::string, std::size_t> known;
     for (const auto& sensor : reader.sensors()) {
       const auto [place, is_new] = known.emplace(sensor.name, names.size());
@@ -59,7 +57,7 @@ struct Names {
 };
 
 /// UTC less log time, by the clock of the session at `from`, as it was at its end.
-Nanoseconds utc_at_log_time_zero(const WindlogReader& reader, Nanoseconds from) {
+Nanoseconds utc_at_log_time_zero(const drivers::windlog::Reader& reader, Nanoseconds from) {
   const auto sessions = reader.sessions();
   if (sessions.empty()) return Nanoseconds{0};
   const auto found = std::ranges::find_if(sessions, [from](const auto& session) { return session.log_end() >= from; });
@@ -95,8 +93,9 @@ void append_block(std::string& text, UtcTime utc, Nanoseconds log_time, const st
 
 }  // namespace
 
-Result<CsvExportReport, Failure> resample_csv(WindlogReader& reader, const CsvExportRange& range, Nanoseconds interval,
-                                              std::FILE* out, const std::function<void(std::size_t)>& progress) {
+Result<ExportReport, Failure> resample_csv(drivers::windlog::Reader& reader, const ExportRange& range,
+                                           Nanoseconds interval, std::FILE* out,
+                                           const std::function<void(std::size_t)>& progress) {
   const Names sensors(reader);
   const Nanoseconds utc_at_zero = utc_at_log_time_zero(reader, range.from);
   const Nanoseconds from = std::min(range.from, reader.duration());
@@ -109,7 +108,7 @@ Result<CsvExportReport, Failure> resample_csv(WindlogReader& reader, const CsvEx
                    FailureKind::kUsage};
   }
 
-  CsvExportReport report;
+  ExportReport report;
   std::string text(kResampledHeader);
   text += '\n';
   std::vector<Block> blocks(sensors.names.size());

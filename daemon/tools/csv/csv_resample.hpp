@@ -34,8 +34,8 @@ inline constexpr std::size_t kMaxResampledRows = 10'000'000;
 ///
 /// Memory does not depend on the recording's length. Fails as export_csv() does, and (kUsage) if there would be more
 /// than kMaxResampledRows.
-Result<CsvExportReport, Failure> resample_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
-                                              Nanoseconds interval, std::FILE* out,
-                                              const std::function<void(std::size_t)>& progress = {});
+Result<ExportReport, Failure> resample_csv(drivers::windlog::Reader& reader, const ExportRange& range,
+                                           Nanoseconds interval, std::FILE* out,
+                                           const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace yuragi::daemon::tools::csv

@@ -2,42 +2,42 @@
 
 namespace yuragi::daemon::tools::csv {
 
-std::string_view name_of(CsvRole role) {
+std::string_view name_of(Role role) {
   static constexpr std::array<std::string_view, kCsvRoleCount> kNames = {
       "time",    "date",   "elapsed", "speed",       "direction", "gust",     "u",          "v",
       "quality", "sensor", "w",       "temperature", "pressure",  "humidity", "rain total", "rain rate"};
   return kNames.at(static_cast<std::size_t>(role));
 }
 
-CsvDimension dimension_of(CsvRole role) {
+Dimension dimension_of(Role role) {
   switch (role) {
-    case CsvRole::kSpeed:
-    case CsvRole::kGust:
-    case CsvRole::kU:
-    case CsvRole::kV:
-    case CsvRole::kVerticalSpeed:
-      return CsvDimension::kSpeed;
-    case CsvRole::kDirection:
-      return CsvDimension::kDirection;
-    case CsvRole::kTime:
-    case CsvRole::kElapsed:
-      return CsvDimension::kTime;
-    case CsvRole::kTemperature:
-      return CsvDimension::kTemperature;
-    case CsvRole::kPressure:
-      return CsvDimension::kPressure;
-    case CsvRole::kHumidity:
-      return CsvDimension::kHumidity;
-    case CsvRole::kRainTotal:
-      return CsvDimension::kRain;
-    case CsvRole::kRainRate:
-      return CsvDimension::kRainRate;
-    case CsvRole::kDate:
-    case CsvRole::kQuality:
-    case CsvRole::kSensor:
+    case Role::kSpeed:
+    case Role::kGust:
+    case Role::kU:
+    case Role::kV:
+    case Role::kVerticalSpeed:
+      return Dimension::kSpeed;
+    case Role::kDirection:
+      return Dimension::kDirection;
+    case Role::kTime:
+    case Role::kElapsed:
+      return Dimension::kTime;
+    case Role::kTemperature:
+      return Dimension::kTemperature;
+    case Role::kPressure:
+      return Dimension::kPressure;
+    case Role::kHumidity:
+      return Dimension::kHumidity;
+    case Role::kRainTotal:
+      return Dimension::kRain;
+    case Role::kRainRate:
+      return Dimension::kRainRate;
+    case Role::kDate:
+    case Role::kQuality:
+    case Role::kSensor:
       break;
   }
-  return CsvDimension::kNone;
+  return Dimension::kNone;
 }
 
 }  // namespace yuragi::daemon::tools::csv

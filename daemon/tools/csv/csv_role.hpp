@@ -11,7 +11,7 @@
 namespace yuragi::daemon::tools::csv {
 
 /// The meanings that a column of a CSV file can have.
-enum class CsvRole : std::uint8_t {
+enum class Role : std::uint8_t {
   kTime,
   kDate,  ///< the day, if the time stands in another column
   kElapsed,
@@ -32,12 +32,11 @@ enum class CsvRole : std::uint8_t {
 inline constexpr std::size_t kCsvRoleCount = 16;
 
 /// The roles of what stations report besides the wind, in the order of wind::kStationQuantities.
-inline constexpr std::array<CsvRole, 6> kQuantityRoles = {CsvRole::kVerticalSpeed, CsvRole::kTemperature,
-                                                          CsvRole::kPressure,      CsvRole::kHumidity,
-                                                          CsvRole::kRainTotal,     CsvRole::kRainRate};
+inline constexpr std::array<Role, 6> kQuantityRoles = {Role::kVerticalSpeed, Role::kTemperature, Role::kPressure,
+                                                       Role::kHumidity,      Role::kRainTotal,   Role::kRainRate};
 static_assert(kQuantityRoles.size() == wind::kStationQuantities.size());
 
-std::string_view name_of(CsvRole role);
-CsvDimension dimension_of(CsvRole role);
+std::string_view name_of(Role role);
+Dimension dimension_of(Role role);
 
 }  // namespace yuragi::daemon::tools::csv

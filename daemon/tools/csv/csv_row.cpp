@@ -35,15 +35,14 @@ Failure refusal(std::string_view what, std::string_view text) {
 
 }  // namespace
 
-Result<CsvRowReader, Failure> CsvRowReader::make(const CsvLayout& layout, const CsvSurvey& survey,
-                                                 const CsvImportOptions& options) {
-  CsvRowReader reader(layout, survey, options);
+Result<RowReader, Failure> RowReader::make(const Layout& layout, const Survey& survey, const ImportOptions& options) {
+  RowReader reader(layout, survey, options);
   reader.zone_source_ = "because the file names no zone; --zone changes that";
   if (options.zone) {
     reader.zone_ = *options.zone;
     reader.zone_source_ = "by --zone";
   } else if (layout.columns.zone) {
-    const auto zone = CsvZone::parse(*layout.columns.zone);
+    const auto zone = Zone::parse(*layout.columns.zone);
     if (!zone) return zone.error();
     reader.zone_ = *zone;
     reader.zone_source_ = "as the file states";
@@ -51,35 +50,35 @@ Result<CsvRowReader, Failure> CsvRowReader::make(const CsvLayout& layout, const 
   return reader;
 }
 
-bool CsvRowReader::is_missing(CsvRole role, std::string_view text) const {
+bool RowReader::is_missing(Role role, std::string_view text) const {
   if (is_missing_word(text)) return true;
   const auto number = parse_number(text, dimension_of(role));
   for (const std::string& missing : options_.missing) {
-    const auto mark = parse_number(missing, CsvDimension::kNone);
+    const auto mark = parse_number(missing, Dimension::kNone);
     if (text == missing || (number && mark && number->value == mark->value)) return true;
   }
   if (!number) return false;
-  const CsvUnit unit = number->unit.value_or(unit_of(role));
+  const Unit unit = number->unit.value_or(unit_of(role));
   return is_missing_number(role, number->value, number->value * unit.factor + unit.offset) ||
          number->value == survey_.missing_mark[static_cast<std::size_t>(role)];
 }
 
-CsvUnit CsvRowReader::unit_of(CsvRole role) const {
+Unit RowReader::unit_of(Role role) const {
   const auto& column = columns_.at(role);
-  return column && column->unit ? *column->unit : CsvUnit{};
+  return column && column->unit ? *column->unit : Unit{};
 }
 
-Result<CsvRow, Failure> CsvRowReader::read(const CsvFields& fields) {
-  CsvRow row;
-  wind::WindReading& reading = row.reading;
+Result<Row, Failure> RowReader::read(const Fields& fields) {
+  Row row;
+  wind::Reading& reading = row.reading;
   if (const auto done = read_wind(fields, reading); !done) return done.error();
 
-  const auto gust_m_s = read_speed(fields, CsvRole::kGust);
+  const auto gust_m_s = read_speed(fields, Role::kGust);
   if (!gust_m_s) return gust_m_s.error();
-  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero:", *fields.at(CsvRole::kGust));
+  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero:", *fields.at(Role::kGust));
   reading.gust_m_s = *gust_m_s;
 
-  if (const auto quality = fields.at(CsvRole::kQuality)) {
+  if (const auto quality = fields.at(Role::kQuality)) {
     const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), *quality);
     if (word == kQualityWords.end()) return refusal("unknown quality:", *quality);
     reading.quality = static_cast<wind::ReadingQuality>(word - kQualityWords.begin());
@@ -98,7 +97,7 @@ Result<CsvRow, Failure> CsvRowReader::read(const CsvFields& fields) {
   return row;
 }
 
-Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
+Result<Instant, Failure> RowReader::read_time(const Fields& fields) {
   const std::string_view text = fields.time;
   const auto written = parse_time(text, survey_.time_format);
   if (!written) return refusal("not a time (" + std::string(name_of(survey_.time_format)) + "; --time-format):", text);
@@ -113,12 +112,12 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
 
   // Monotonic time: from yuragi's own export, or else UTC since the first row.
   Instant time{MonoTime(utc - first_utc_.value_or(utc)), utc};
-  if (const auto elapsed = fields.at(CsvRole::kElapsed)) {
+  if (const auto elapsed = fields.at(Role::kElapsed)) {
     const auto ns = parse_decimal(*elapsed, kElapsedDecimals);
     if (!ns) return refusal("not a number of seconds:", *elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }
-  wind::WindReading recordable;
+  wind::Reading recordable;
   recordable.time = time;
   if (time.mono < last_) {
     ++went_back_;
@@ -134,7 +133,7 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
   return time;
 }
 
-Result<std::optional<double>, Failure> CsvRowReader::read_number(const CsvFields& fields, CsvRole role) {
+Result<std::optional<double>, Failure> RowReader::read_number(const Fields& fields, Role role) {
   const auto text = fields.at(role);
   if (!text) return std::optional<double>{};
   if (is_missing(role, *text)) {
@@ -143,48 +142,48 @@ Result<std::optional<double>, Failure> CsvRowReader::read_number(const CsvFields
   }
   const auto number = parse_number(*text, dimension_of(role));
   if (!number) return refusal("not a number in " + std::string(name_of(role)) + ":", *text);
-  const CsvUnit unit = number->unit.value_or(unit_of(role));
+  const Unit unit = number->unit.value_or(unit_of(role));
   return std::optional<double>(number->value * unit.factor + unit.offset);
 }
 
-Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields& fields, CsvRole role) {
+Result<std::optional<double>, Failure> RowReader::read_speed(const Fields& fields, Role role) {
   // A calm in words is a speed.
   if (const auto text = fields.at(role); text && text->size() == 4 && lower(*text) == "calm") return std::optional(0.0);
   return read_number(fields, role);
 }
 
 /// Speed and direction, from themselves or from components.
-Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, wind::WindReading& reading) {
-  if (const auto speed = fields.at(CsvRole::kSpeed)) {
+Result<void, Failure> RowReader::read_wind(const Fields& fields, wind::Reading& reading) {
+  if (const auto speed = fields.at(Role::kSpeed)) {
     if (std::ranges::count(*speed, ',') == 4) return read_packed_wind(*speed, reading);
-    const auto speed_m_s = read_speed(fields, CsvRole::kSpeed);
+    const auto speed_m_s = read_speed(fields, Role::kSpeed);
     if (!speed_m_s) return speed_m_s.error();
     if (!*speed_m_s) return Failure{"no speed"};
     if (**speed_m_s < 0.0) return refusal("speed below zero:", *speed);
     reading.speed_m_s = **speed_m_s;
-    const auto direction = fields.at(CsvRole::kDirection);
+    const auto direction = fields.at(Role::kDirection);
     if (direction) reading.direction_deg = read_direction(*direction);
     return {};
   }
 
-  const auto u_m_s = read_number(fields, CsvRole::kU);
+  const auto u_m_s = read_number(fields, Role::kU);
   if (!u_m_s) return u_m_s.error();
-  const auto v_m_s = read_number(fields, CsvRole::kV);
+  const auto v_m_s = read_number(fields, Role::kV);
   if (!v_m_s) return v_m_s.error();
   if (!*u_m_s || !*v_m_s) return Failure{"no u or no v"};
-  const wind::WindVector wind = (options_.components_are_from ? -1.0 : 1.0) * wind::WindVector{**u_m_s, **v_m_s};
+  const wind::Vector wind = (options_.components_are_from ? -1.0 : 1.0) * wind::Vector{**u_m_s, **v_m_s};
   reading.speed_m_s = speed_of(wind);
   if (reading.speed_m_s > 0.0) reading.direction_deg = wind::direction_from_deg(wind);
   return {};
 }
 
 /// The field WND of NOAA's Integrated Surface Database: "310,1,N,0051,1" is 310 degrees, 5.1 m/s.
-Result<void, Failure> CsvRowReader::read_packed_wind(std::string_view text, wind::WindReading& reading) {
+Result<void, Failure> RowReader::read_packed_wind(std::string_view text, wind::Reading& reading) {
   std::string copy(text);
   std::vector<std::string_view> parts;
   if (!split_csv_line(copy, ',', parts) || parts.size() != 5) return refusal("not a wind in NOAA's format:", text);
-  const auto direction = parse_number(parts[0], CsvDimension::kNone);
-  const auto speed = parse_number(parts[3], CsvDimension::kNone);
+  const auto direction = parse_number(parts[0], Dimension::kNone);
+  const auto speed = parse_number(parts[3], Dimension::kNone);
   if (!direction || !speed) return refusal("not a wind in NOAA's format:", text);
   constexpr double kNoDirection = 999.0;
   constexpr double kNoSpeed = 9999.0;
@@ -195,17 +194,16 @@ Result<void, Failure> CsvRowReader::read_packed_wind(std::string_view text, wind
   return {};
 }
 
-CsvDirectionUnit CsvRowReader::direction_unit() const {
-  if (options_.direction_unit != CsvDirectionUnit::kAuto) return options_.direction_unit;
-  const auto& column = columns_.at(CsvRole::kDirection);
-  return column && column->unit && column->unit->name == "radians" ? CsvDirectionUnit::kRadians
-                                                                   : CsvDirectionUnit::kDegrees;
+DirectionUnit RowReader::direction_unit() const {
+  if (options_.direction_unit != DirectionUnit::kAuto) return options_.direction_unit;
+  const auto& column = columns_.at(Role::kDirection);
+  return column && column->unit && column->unit->name == "radians" ? DirectionUnit::kRadians : DirectionUnit::kDegrees;
 }
 
 /// Nullopt if the field is not a direction; the speed beside it is still valid.
-std::optional<double> CsvRowReader::read_direction(std::string_view text) {
-  if (is_missing(CsvRole::kDirection, text)) {
-    if (!text.empty()) ++missing_[static_cast<std::size_t>(CsvRole::kDirection)];
+std::optional<double> RowReader::read_direction(std::string_view text) {
+  if (is_missing(Role::kDirection, text)) {
+    if (!text.empty()) ++missing_[static_cast<std::size_t>(Role::kDirection)];
     return std::nullopt;
   }
   // The name of a compass point, or a number in the unit of the column.
@@ -216,11 +214,11 @@ std::optional<double> CsvRowReader::read_direction(std::string_view text) {
     if (const auto word = kWords.find(lower(text.substr(0, 6))); word != kWords.end()) direction_deg = word->second;
   }
   if (!direction_deg) {
-    if (const auto number = parse_number(text, CsvDimension::kDirection)) {
-      const CsvDirectionUnit unit = direction_unit();
+    if (const auto number = parse_number(text, Dimension::kDirection)) {
+      const DirectionUnit unit = direction_unit();
       direction_deg = number->value;
-      if (unit == CsvDirectionUnit::kRadians) direction_deg = number->value / kRadPerDeg;
-      if (unit == CsvDirectionUnit::kPoint16) direction_deg = number->value * kDegPerCompassPoint;
+      if (unit == DirectionUnit::kRadians) direction_deg = number->value / kRadPerDeg;
+      if (unit == DirectionUnit::kPoint16) direction_deg = number->value * kDegPerCompassPoint;
     }
   }
 
@@ -241,7 +239,7 @@ std::optional<double> CsvRowReader::read_direction(std::string_view text) {
   return direction_deg;
 }
 
-std::optional<wind::StationQuantities> CsvRowReader::read_quantities(const CsvFields& fields, const Instant& time) {
+std::optional<wind::StationQuantities> RowReader::read_quantities(const Fields& fields, const Instant& time) {
   wind::StationQuantities quantities;
   quantities.time = time;
   for (std::size_t i = 0; i < kQuantityRoles.size(); ++i) {
@@ -257,45 +255,45 @@ std::optional<wind::StationQuantities> CsvRowReader::read_quantities(const CsvFi
   return wind::plausible_part(quantities);
 }
 
-std::string CsvRowReader::describe_time() const {
+std::string RowReader::describe_time() const {
   std::string text(name_of(survey_.time_format));
-  if (survey_.time_format == CsvTimeFormat::kSeconds) return text + ", counted from 1970, because there is no date";
+  if (survey_.time_format == TimeFormat::kSeconds) return text + ", counted from 1970, because there is no date";
   if (!is_calendar(survey_.time_format)) return text;
   if (zoned_ > 0) text += ", with zones of their own";
   if (unzoned_ > 0) text += ", in " + zone_.name() + " " + zone_source_;
   return text;
 }
 
-std::vector<std::string> CsvRowReader::describe() const {
+std::vector<std::string> RowReader::describe() const {
   std::vector<std::string> lines;
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     if (!columns_.by_role[index]) continue;
-    const CsvColumn& column = *columns_.by_role[index];
-    const auto role = static_cast<CsvRole>(index);
+    const Column& column = *columns_.by_role[index];
+    const auto role = static_cast<Role>(index);
     std::string line = std::string(name_of(role)) + " from \"" + column.name + "\"";
     const auto unit = [&] { return column.unit ? std::string(column.unit->name) + ", " : std::string(); };
     switch (role) {
-      case CsvRole::kTime:
+      case Role::kTime:
         line += " (" + describe_time() + ")";
         break;
-      case CsvRole::kU:
+      case Role::kU:
         line +=
             " (" + unit() + (options_.components_are_from ? "from east; " : "toward east; ") + column.unit_source + ")";
         break;
-      case CsvRole::kV:
+      case Role::kV:
         line += " (" + unit() + (options_.components_are_from ? "from north; " : "toward north; ") +
                 column.unit_source + ")";
         break;
-      case CsvRole::kDirection:
+      case Role::kDirection:
         line += options_.direction_is_toward ? " (where it blows to" : " (where it comes from";
-        line += direction_unit() == CsvDirectionUnit::kRadians ? ", in radians)" : ")";
+        line += direction_unit() == DirectionUnit::kRadians ? ", in radians)" : ")";
         break;
-      case CsvRole::kElapsed:
+      case Role::kElapsed:
         line += " (s)";
         break;
-      case CsvRole::kDate:
-      case CsvRole::kQuality:
-      case CsvRole::kSensor:
+      case Role::kDate:
+      case Role::kQuality:
+      case Role::kSensor:
         break;
       default:
         line += " (" + unit() + column.unit_source + ")";
@@ -309,11 +307,11 @@ std::vector<std::string> CsvRowReader::describe() const {
   return lines;
 }
 
-std::vector<std::string> CsvRowReader::notes() const {
+std::vector<std::string> RowReader::notes() const {
   std::vector<std::string> lines;
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     if (missing_[index] == 0) continue;
-    lines.push_back(fmt::format("{}: {} left empty, marked as missing", name_of(static_cast<CsvRole>(index)),
+    lines.push_back(fmt::format("{}: {} left empty, marked as missing", name_of(static_cast<Role>(index)),
                                 count_text(missing_[index], "value")));
   }
   for (const auto& [text, count] : odd_directions_) {

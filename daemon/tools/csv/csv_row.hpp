@@ -17,20 +17,19 @@
 namespace yuragi::daemon::tools::csv {
 
 /// The content of a row.
-struct CsvRow {
-  wind::WindReading reading;
+struct Row {
+  wind::Reading reading;
   std::optional<wind::StationQuantities> quantities;  ///< at the reading's time, as far as they are plausible
 };
 
 /// Converts the rows of one CSV file to readings. Thread-safe: no.
-class CsvRowReader {
+class RowReader {
  public:
   /// Fails if the file names an unknown zone.
-  static Result<CsvRowReader, Failure> make(const CsvLayout& layout, const CsvSurvey& survey,
-                                            const CsvImportOptions& options);
+  static Result<RowReader, Failure> make(const Layout& layout, const Survey& survey, const ImportOptions& options);
 
   /// The reading in a row, or why it is refused. Call it in the order of time.
-  Result<CsvRow, Failure> read(const CsvFields& fields);
+  Result<Row, Failure> read(const Fields& fields);
 
   /// How each column was understood, a line each; complete after the last row.
   std::vector<std::string> describe() const;
@@ -38,26 +37,26 @@ class CsvRowReader {
   std::vector<std::string> notes() const;
 
  private:
-  CsvRowReader(const CsvLayout& layout, const CsvSurvey& survey, const CsvImportOptions& options)
+  RowReader(const Layout& layout, const Survey& survey, const ImportOptions& options)
       : columns_(layout.columns), survey_(survey), options_(options) {}
 
-  Result<Instant, Failure> read_time(const CsvFields& fields);
+  Result<Instant, Failure> read_time(const Fields& fields);
   /// The number in its base unit.
-  Result<std::optional<double>, Failure> read_number(const CsvFields& fields, CsvRole role);
-  Result<std::optional<double>, Failure> read_speed(const CsvFields& fields, CsvRole role);
+  Result<std::optional<double>, Failure> read_number(const Fields& fields, Role role);
+  Result<std::optional<double>, Failure> read_speed(const Fields& fields, Role role);
   std::optional<double> read_direction(std::string_view text);
-  Result<void, Failure> read_wind(const CsvFields& fields, wind::WindReading& reading);
-  Result<void, Failure> read_packed_wind(std::string_view text, wind::WindReading& reading);
-  std::optional<wind::StationQuantities> read_quantities(const CsvFields& fields, const Instant& time);
-  bool is_missing(CsvRole role, std::string_view text) const;
-  CsvUnit unit_of(CsvRole role) const;
-  CsvDirectionUnit direction_unit() const;
+  Result<void, Failure> read_wind(const Fields& fields, wind::Reading& reading);
+  Result<void, Failure> read_packed_wind(std::string_view text, wind::Reading& reading);
+  std::optional<wind::StationQuantities> read_quantities(const Fields& fields, const Instant& time);
+  bool is_missing(Role role, std::string_view text) const;
+  Unit unit_of(Role role) const;
+  DirectionUnit direction_unit() const;
   std::string describe_time() const;
 
-  const CsvColumns& columns_;
-  const CsvSurvey& survey_;
-  const CsvImportOptions& options_;
-  CsvZone zone_;
+  const Columns& columns_;
+  const Survey& survey_;
+  const ImportOptions& options_;
+  Zone zone_;
   std::string zone_source_;
   std::optional<UtcTime> first_utc_;
   std::optional<UtcTime> last_utc_;

@@ -20,7 +20,7 @@ struct FormatTally {
   std::size_t back = 0;
   std::optional<UtcTime> last;
 
-  void add(const std::optional<CsvTime>& time) {
+  void add(const std::optional<Time>& time) {
     if (!time) return;
     ++count;
     const UtcTime utc = time->clock - time->utc_offset.value_or(Nanoseconds{0});
@@ -59,14 +59,14 @@ constexpr double kStrangeMedian_m_s = 12.0;
 /// A single value above this, far above all others, is not a value.
 constexpr double kStrangeSpeed_m_s = 60.0;
 
-class Survey {
+class Surveyor {
  public:
-  Survey(const CsvLayout& layout, const CsvImportOptions& options) : layout_(layout), options_(options) {}
+  Surveyor(const Layout& layout, const ImportOptions& options) : layout_(layout), options_(options) {}
 
-  void add(const CsvFields& fields) {
+  void add(const Fields& fields) {
     add_time(fields.time);
-    const auto speed = add_number(fields, CsvRole::kSpeed);
-    const auto gust = add_number(fields, CsvRole::kGust);
+    const auto speed = add_number(fields, Role::kSpeed);
+    const auto gust = add_number(fields, Role::kGust);
     if (speed && *speed > 0.0) {
       ++moving_;
       if (*speed > kStrangeMedian_m_s) ++strong_;
@@ -76,12 +76,12 @@ class Survey {
       ++gusty_;
       if (*gust < kRounding * *speed) ++weak_gusts_;
     }
-    add_number(fields, CsvRole::kU);
-    add_number(fields, CsvRole::kV);
-    for (const CsvRole role : kQuantityRoles) add_number(fields, role);
+    add_number(fields, Role::kU);
+    add_number(fields, Role::kV);
+    for (const Role role : kQuantityRoles) add_number(fields, role);
   }
 
-  Result<CsvSurvey, Failure> finish() {
+  Result<Survey, Failure> finish() {
     if (const auto done = settle_time(); !done) return done.error();
     settle_marks();
     if (const auto done = check_units(); !done) return done.error();
@@ -89,41 +89,41 @@ class Survey {
   }
 
  private:
-  FormatTally& tally(CsvTimeFormat format) { return formats_[static_cast<std::size_t>(format)]; }
+  FormatTally& tally(TimeFormat format) { return formats_[static_cast<std::size_t>(format)]; }
 
   void add_time(std::string_view text) {
-    if (options_.time_format != CsvTimeFormat::kAuto) {
+    if (options_.time_format != TimeFormat::kAuto) {
       tally(options_.time_format).add(parse_time(text, options_.time_format));
       return;
     }
     if (const auto count_format = guess_count_format(text)) {
       ++numbers_;
-      if (!number_format_) number_format_ = is_in_ms() ? CsvTimeFormat::kUnixMs : *count_format;
+      if (!number_format_) number_format_ = is_in_ms() ? TimeFormat::kUnixMs : *count_format;
       tally(*number_format_).add(parse_time(text, *number_format_));
-      tally(CsvTimeFormat::kCompact).add(parse_time(text, CsvTimeFormat::kCompact));
+      tally(TimeFormat::kCompact).add(parse_time(text, TimeFormat::kCompact));
       return;
     }
-    tally(CsvTimeFormat::kIso).add(parse_time(text, CsvTimeFormat::kIso));
-    const auto day_first = parse_time(text, CsvTimeFormat::kDayFirst);
-    const auto month_first = parse_time(text, CsvTimeFormat::kMonthFirst);
-    tally(CsvTimeFormat::kDayFirst).add(day_first);
-    tally(CsvTimeFormat::kMonthFirst).add(month_first);
+    tally(TimeFormat::kIso).add(parse_time(text, TimeFormat::kIso));
+    const auto day_first = parse_time(text, TimeFormat::kDayFirst);
+    const auto month_first = parse_time(text, TimeFormat::kMonthFirst);
+    tally(TimeFormat::kDayFirst).add(day_first);
+    tally(TimeFormat::kMonthFirst).add(month_first);
     if (day_first && month_first && day_first->clock != month_first->clock && ambiguous_.empty()) ambiguous_ = text;
     if (text.size() > 5 && text.substr(0, 6).find('.') != std::string_view::npos) ++dotted_;
   }
 
   bool is_in_ms() const {
-    const auto& column = layout_.columns.at(CsvRole::kTime);
+    const auto& column = layout_.columns.at(Role::kTime);
     return column && column->unit && column->unit->name == "ms";
   }
 
   /// The number of a field in its base unit, unless it is missing.
-  std::optional<double> add_number(const CsvFields& fields, CsvRole role) {
+  std::optional<double> add_number(const Fields& fields, Role role) {
     const auto& text = fields.at(role);
     if (!text || is_missing_word(*text)) return std::nullopt;
     const auto number = parse_number(*text, dimension_of(role));
     if (!number) return std::nullopt;
-    const CsvUnit unit = number->unit.value_or(layout_.columns.at(role)->unit.value_or(CsvUnit{}));
+    const Unit unit = number->unit.value_or(layout_.columns.at(role)->unit.value_or(Unit{}));
     const double base = number->value * unit.factor + unit.offset;
     if (is_missing_number(role, number->value, base)) return std::nullopt;
     numbers_of_[static_cast<std::size_t>(role)].add(number->value);
@@ -132,24 +132,24 @@ class Survey {
   }
 
   Result<void, Failure> settle_time() {
-    if (options_.time_format != CsvTimeFormat::kAuto) return settle_as(options_.time_format);
-    const auto count = [this](CsvTimeFormat format) { return tally(format).count; };
+    if (options_.time_format != TimeFormat::kAuto) return settle_as(options_.time_format);
+    const auto count = [this](TimeFormat format) { return tally(format).count; };
     const std::size_t dates =
-        std::max({count(CsvTimeFormat::kIso), count(CsvTimeFormat::kDayFirst), count(CsvTimeFormat::kMonthFirst)});
+        std::max({count(TimeFormat::kIso), count(TimeFormat::kDayFirst), count(TimeFormat::kMonthFirst)});
     if (numbers_ > dates) {
-      const std::string name = lower(layout_.columns.at(CsvRole::kTime)->name);
+      const std::string name = lower(layout_.columns.at(Role::kTime)->name);
       const bool is_unix = name.find("unix") != std::string::npos || name.find("epoch") != std::string::npos;
-      const bool is_compact = !is_unix && !is_in_ms() && count(CsvTimeFormat::kCompact) == numbers_;
-      return settle_as(is_compact ? CsvTimeFormat::kCompact : *number_format_);
+      const bool is_compact = !is_unix && !is_in_ms() && count(TimeFormat::kCompact) == numbers_;
+      return settle_as(is_compact ? TimeFormat::kCompact : *number_format_);
     }
-    if (dates == 0 || count(CsvTimeFormat::kIso) == dates) return settle_as(CsvTimeFormat::kIso);
+    if (dates == 0 || count(TimeFormat::kIso) == dates) return settle_as(TimeFormat::kIso);
     if (layout_.columns.is_day_first) {
-      return settle_as(*layout_.columns.is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
+      return settle_as(*layout_.columns.is_day_first ? TimeFormat::kDayFirst : TimeFormat::kMonthFirst);
     }
     return settle_order_of_date();
   }
 
-  Result<void, Failure> settle_as(CsvTimeFormat format) {
+  Result<void, Failure> settle_as(TimeFormat format) {
     result_.time_format = format;
     const FormatTally& times = tally(format);
     result_.is_newest_first = times.back >= 2 && times.back > 4 * times.forward;
@@ -158,24 +158,24 @@ class Survey {
 
   /// Of dates like 3/4/2023.
   Result<void, Failure> settle_order_of_date() {
-    const FormatTally& day_first = tally(CsvTimeFormat::kDayFirst);
-    const FormatTally& month_first = tally(CsvTimeFormat::kMonthFirst);
-    if (ambiguous_.empty() && day_first.count == month_first.count) return settle_as(CsvTimeFormat::kDayFirst);
+    const FormatTally& day_first = tally(TimeFormat::kDayFirst);
+    const FormatTally& month_first = tally(TimeFormat::kMonthFirst);
+    if (ambiguous_.empty() && day_first.count == month_first.count) return settle_as(TimeFormat::kDayFirst);
     if (day_first.count != month_first.count) {
       const bool is_day_first = day_first.count > month_first.count;
       result_.notes.push_back(fmt::format("dates: the {} comes first, because a number above 12 is in its place",
                                           is_day_first ? "day" : "month"));
-      return settle_as(is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
+      return settle_as(is_day_first ? TimeFormat::kDayFirst : TimeFormat::kMonthFirst);
     }
     if (dotted_ == day_first.count) {
       result_.notes.emplace_back("dates: the day comes first, because dots separate the numbers");
-      return settle_as(CsvTimeFormat::kDayFirst);
+      return settle_as(TimeFormat::kDayFirst);
     }
     if ((day_first.back == 0) != (month_first.back == 0)) {
       const bool is_day_first = day_first.back == 0;
       result_.notes.push_back(fmt::format("dates: the {} comes first, because times would go back otherwise",
                                           is_day_first ? "day" : "month"));
-      return settle_as(is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
+      return settle_as(is_day_first ? TimeFormat::kDayFirst : TimeFormat::kMonthFirst);
     }
     return Failure{"the order of day and month is not clear in \"" + ambiguous_ +
                    "\", nor in any other row; add --time-format day-first or month-first"};
@@ -183,11 +183,11 @@ class Survey {
 
   void settle_marks() {
     for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
-      const auto role = static_cast<CsvRole>(index);
+      const auto role = static_cast<Role>(index);
       const NumberTally& numbers = numbers_of_[index];
       if (!numbers.greatest || !is_possible_mark(role, *numbers.greatest)) continue;
-      const CsvColumn& column = *layout_.columns.at(role);
-      const bool is_storm = dimension_of(role) == CsvDimension::kSpeed && column.unit &&
+      const Column& column = *layout_.columns.at(role);
+      const bool is_storm = dimension_of(role) == Dimension::kSpeed && column.unit &&
                             *numbers.greatest * column.unit->factor > kStrangeSpeed_m_s;
       if (numbers.is_far_above_others() && (numbers.times > 1 || is_storm)) {
         result_.missing_mark[index] = numbers.greatest;
@@ -204,7 +204,7 @@ class Survey {
   }
 
   Result<void, Failure> check_units() {
-    const auto& speed = layout_.columns.at(CsvRole::kSpeed);
+    const auto& speed = layout_.columns.at(Role::kSpeed);
     if (speed && speed->unit_source == kAssumedUnit) {
       constexpr const char* kSayUnit = "add --unit with m/s, km/h, kn, mph or ft/s";
       if (2 * strong_ > moving_) {
@@ -212,7 +212,7 @@ class Survey {
             fmt::format("no unit is given for column \"{}\", and in m/s most of its rows would be above {} m/s; {}",
                         speed->name, kStrangeMedian_m_s, kSayUnit)};
       }
-      for (const CsvRole role : {CsvRole::kTemperature, CsvRole::kPressure}) {
+      for (const Role role : {Role::kTemperature, Role::kPressure}) {
         const auto& other = layout_.columns.at(role);
         if (!other || (other->unit->name != "F" && other->unit->name != "inHg")) continue;
         return Failure{fmt::format("no unit is given for column \"{}\", and \"{}\" is in {}; {}", speed->name,
@@ -220,7 +220,7 @@ class Survey {
       }
     }
     if (gusty_ < 3 || 2 * weak_gusts_ <= gusty_) return {};
-    const CsvColumn& gust = *layout_.columns.at(CsvRole::kGust);
+    const Column& gust = *layout_.columns.at(Role::kGust);
     const std::string found =
         fmt::format("in {} of {} rows the gust would be below the speed (\"{}\" in {}, \"{}\" in {})", weak_gusts_,
                     gusty_, gust.name, gust.unit->name, speed->name, speed->unit->name);
@@ -231,11 +231,11 @@ class Survey {
     return Failure{found + "; add --gust-unit and --unit"};
   }
 
-  const CsvLayout& layout_;
-  const CsvImportOptions& options_;
+  const Layout& layout_;
+  const ImportOptions& options_;
   std::array<FormatTally, kCsvTimeFormatCount> formats_;
   std::size_t numbers_ = 0;  ///< times that are numbers
-  std::optional<CsvTimeFormat> number_format_;
+  std::optional<TimeFormat> number_format_;
   std::string ambiguous_;  ///< the first date that can be read either way
   std::size_t dotted_ = 0;
   std::array<NumberTally, kCsvRoleCount> numbers_of_;
@@ -243,18 +243,18 @@ class Survey {
   std::size_t strong_ = 0;
   std::size_t gusty_ = 0;  ///< rows with both speed and gust
   std::size_t weak_gusts_ = 0;
-  CsvSurvey result_;
+  Survey result_;
 };
 
 }  // namespace
 
-Result<CsvSurvey, Failure> survey_rows(std::istream& in, const CsvLayout& layout, const CsvImportOptions& options) {
-  auto splitter = CsvRowSplitter::make(layout, options);
+Result<Survey, Failure> survey_rows(std::istream& in, const Layout& layout, const ImportOptions& options) {
+  auto splitter = RowSplitter::make(layout, options);
   if (!splitter) return splitter.error();
-  CsvLines lines(in, options.comment);
+  Lines lines(in, options.comment);
   lines.begin_at(layout.first_row);
-  Survey survey(layout, options);
-  CsvFields fields;
+  Surveyor survey(layout, options);
+  Fields fields;
   while (lines.next()) {
     const auto is_row = splitter->split(lines.line(), fields);
     if (is_row && *is_row) survey.add(fields);

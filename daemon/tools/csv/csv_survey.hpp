@@ -13,8 +13,8 @@
 namespace yuragi::daemon::tools::csv {
 
 /// What only all rows together show.
-struct CsvSurvey {
-  CsvTimeFormat time_format = CsvTimeFormat::kIso;
+struct Survey {
+  TimeFormat time_format = TimeFormat::kIso;
   bool is_newest_first = false;
   std::array<std::optional<double>, kCsvRoleCount> missing_mark;  ///< a number that stands for no value
   std::vector<std::string> notes;                                 ///< what was settled, for people
@@ -23,6 +23,6 @@ struct CsvSurvey {
 /// Reads all rows of `in` to settle the format of times (which of 3/4/2023 is the day?), marks for missing values, and
 /// whether the units can be right. Fails, with the option that helps, if they cannot be settled. Thread-safe: yes,
 /// with separate streams.
-Result<CsvSurvey, Failure> survey_rows(std::istream& in, const CsvLayout& layout, const CsvImportOptions& options);
+Result<Survey, Failure> survey_rows(std::istream& in, const Layout& layout, const ImportOptions& options);
 
 }  // namespace yuragi::daemon::tools::csv

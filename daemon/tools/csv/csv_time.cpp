@@ -20,9 +20,9 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-std::optional<CsvTime> time_if_recordable(std::optional<std::int64_t> ns) {
+std::optional<Time> time_if_recordable(std::optional<std::int64_t> ns) {
   if (!ns || *ns < -drivers::windlog::kMaxTime_ns || *ns > drivers::windlog::kMaxTime_ns) return std::nullopt;
-  return CsvTime{UtcTime(Nanoseconds(*ns)), Nanoseconds{0}};
+  return Time{UtcTime(Nanoseconds(*ns)), Nanoseconds{0}};
 }
 
 /// Digits as they were written: "07" is 7 of two.
@@ -38,18 +38,18 @@ class CalendarText {
 
   bool is_empty() const { return rest_.empty(); }
 
-  std::optional<std::chrono::sys_days> take_day(CsvTimeFormat format) {
+  std::optional<std::chrono::sys_days> take_day(TimeFormat format) {
     take_weekday();
     if (const auto month = take_month_name()) return take_after_month(*month);
     const auto first = take_digits();
     if (!first) return std::nullopt;
     constexpr int kYearPart = 10'000;
     constexpr int kMonthPart = 100;
-    if (first->count == 8 && format == CsvTimeFormat::kIso) {
+    if (first->count == 8 && format == TimeFormat::kIso) {
       return day_of(first->value / kYearPart, first->value / kMonthPart % kMonthPart, first->value % kMonthPart);
     }
     if (first->count == 4) {
-      if (format != CsvTimeFormat::kIso || !take_any("-/. ")) return std::nullopt;
+      if (format != TimeFormat::kIso || !take_any("-/. ")) return std::nullopt;
       const auto month = take_month();
       if (!month || !take_any("-/. ")) return std::nullopt;
       const auto day = take_digits(2);
@@ -208,20 +208,19 @@ class CalendarText {
   }
 
   /// 20/07/2018 or 07/20/2018, 20-Jul-2018
-  std::optional<std::chrono::sys_days> take_after_short_number(int first, CsvTimeFormat format) {
+  std::optional<std::chrono::sys_days> take_after_short_number(int first, TimeFormat format) {
     if (!take_any("-/. ")) return std::nullopt;
     if (const auto month = take_month_name()) {
       take_any("-/. ");
       const auto year = take_year();
       return year ? day_of(*year, *month, first) : std::nullopt;
     }
-    if (format == CsvTimeFormat::kIso) return std::nullopt;
+    if (format == TimeFormat::kIso) return std::nullopt;
     const auto second = take_digits(2);
     if (!second || !take_any("-/. ")) return std::nullopt;
     const auto year = take_year();
     if (!year) return std::nullopt;
-    return format == CsvTimeFormat::kDayFirst ? day_of(*year, second->value, first)
-                                              : day_of(*year, first, second->value);
+    return format == TimeFormat::kDayFirst ? day_of(*year, second->value, first) : day_of(*year, first, second->value);
   }
 
   std::optional<int> take_year() {
@@ -259,15 +258,15 @@ class CalendarText {
   std::string_view rest_;
 };
 
-std::optional<CsvTime> on_day(std::chrono::sys_days day, Nanoseconds clock, std::optional<Nanoseconds> offset) {
+std::optional<Time> on_day(std::chrono::sys_days day, Nanoseconds clock, std::optional<Nanoseconds> offset) {
   // A date of four digits can be too far for nanoseconds.
   constexpr std::int64_t kMaxDays = drivers::windlog::kMaxTime_ns / (24LL * 3600 * 1'000'000'000) - 3;
   const auto days = day.time_since_epoch().count();
   if (days < -kMaxDays || days > kMaxDays) return std::nullopt;
-  return CsvTime{UtcTime(day) + clock, offset};
+  return Time{UtcTime(day) + clock, offset};
 }
 
-std::optional<CsvTime> parse_calendar(std::string_view text, CsvTimeFormat format) {
+std::optional<Time> parse_calendar(std::string_view text, TimeFormat format) {
   CalendarText calendar(text);
   const auto day = calendar.take_day(format);
   if (!day) return std::nullopt;
@@ -282,7 +281,7 @@ std::optional<CsvTime> parse_calendar(std::string_view text, CsvTimeFormat forma
   return on_day(*day, clock, offset);
 }
 
-std::optional<CsvTime> parse_compact(std::string_view text) {
+std::optional<Time> parse_compact(std::string_view text) {
   if (text.ends_with(".0")) text.remove_suffix(2);
   if (!std::ranges::all_of(text, is_digit)) return std::nullopt;
   if (text.size() != 8 && text.size() != 10 && text.size() != 12 && text.size() != 14) return std::nullopt;
@@ -293,28 +292,28 @@ std::optional<CsvTime> parse_compact(std::string_view text) {
     written += i == 8 ? ' ' : ':';
     written += text.substr(i, 2);
   }
-  return parse_calendar(written, CsvTimeFormat::kIso);
+  return parse_calendar(written, TimeFormat::kIso);
 }
 
 }  // namespace
 
-std::string_view name_of(CsvTimeFormat format) {
+std::string_view name_of(TimeFormat format) {
   static constexpr std::array<std::string_view, kCsvTimeFormatCount> kNames = {
       "auto", "iso", "day-first", "month-first", "compact", "unix", "unix-ms", "unix-us", "unix-ns", "seconds"};
   return kNames.at(static_cast<std::size_t>(format));
 }
 
-std::optional<CsvTimeFormat> guess_count_format(std::string_view text) {
+std::optional<TimeFormat> guess_count_format(std::string_view text) {
   const auto whole = parse_decimal(text, 0);
   if (!whole) return std::nullopt;
   constexpr std::int64_t kUnixFrom = 100'000'000;                // 1973 in seconds: no recording lasts so long
   constexpr std::int64_t kUnixMsFrom = 100'000'000'000;          // 1973 in milliseconds, and beyond 5000 in seconds
   constexpr std::int64_t kUnixUsFrom = 100'000'000'000'000;      // the same in microseconds
   constexpr std::int64_t kUnixNsFrom = 100'000'000'000'000'000;  // and in nanoseconds
-  if (*whole >= kUnixNsFrom) return CsvTimeFormat::kUnixNs;
-  if (*whole >= kUnixUsFrom) return CsvTimeFormat::kUnixUs;
-  if (*whole >= kUnixMsFrom) return CsvTimeFormat::kUnixMs;
-  return *whole >= kUnixFrom ? CsvTimeFormat::kUnix : CsvTimeFormat::kSeconds;
+  if (*whole >= kUnixNsFrom) return TimeFormat::kUnixNs;
+  if (*whole >= kUnixUsFrom) return TimeFormat::kUnixUs;
+  if (*whole >= kUnixMsFrom) return TimeFormat::kUnixMs;
+  return *whole >= kUnixFrom ? TimeFormat::kUnix : TimeFormat::kSeconds;
 }
 
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
@@ -349,24 +348,24 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals) {
   return is_negative ? -value : value;
 }
 
-std::optional<CsvTime> parse_time(std::string_view text, CsvTimeFormat format) {
+std::optional<Time> parse_time(std::string_view text, TimeFormat format) {
   switch (format) {
-    case CsvTimeFormat::kUnix:
-    case CsvTimeFormat::kSeconds:
+    case TimeFormat::kUnix:
+    case TimeFormat::kSeconds:
       return time_if_recordable(parse_decimal(text, kNanoDecimals));
-    case CsvTimeFormat::kUnixMs:
+    case TimeFormat::kUnixMs:
       return time_if_recordable(parse_decimal(text, kNanoDecimals - 3));
-    case CsvTimeFormat::kUnixUs:
+    case TimeFormat::kUnixUs:
       return time_if_recordable(parse_decimal(text, kNanoDecimals - 6));
-    case CsvTimeFormat::kUnixNs:
+    case TimeFormat::kUnixNs:
       return time_if_recordable(parse_decimal(text, 0));
-    case CsvTimeFormat::kCompact:
+    case TimeFormat::kCompact:
       return parse_compact(text);
-    case CsvTimeFormat::kIso:
-    case CsvTimeFormat::kDayFirst:
-    case CsvTimeFormat::kMonthFirst:
+    case TimeFormat::kIso:
+    case TimeFormat::kDayFirst:
+    case TimeFormat::kMonthFirst:
       return parse_calendar(text, format);
-    case CsvTimeFormat::kAuto:
+    case TimeFormat::kAuto:
       break;
   }
   return std::nullopt;
@@ -374,10 +373,10 @@ std::optional<CsvTime> parse_time(std::string_view text, CsvTimeFormat format) {
 
 bool has_date(std::string_view text) {
   if (const auto count = guess_count_format(text)) {
-    return *count != CsvTimeFormat::kSeconds || parse_compact(text).has_value();
+    return *count != TimeFormat::kSeconds || parse_compact(text).has_value();
   }
-  return parse_calendar(text, CsvTimeFormat::kIso) || parse_calendar(text, CsvTimeFormat::kDayFirst) ||
-         parse_calendar(text, CsvTimeFormat::kMonthFirst);
+  return parse_calendar(text, TimeFormat::kIso) || parse_calendar(text, TimeFormat::kDayFirst) ||
+         parse_calendar(text, TimeFormat::kMonthFirst);
 }
 
 }  // namespace yuragi::daemon::tools::csv

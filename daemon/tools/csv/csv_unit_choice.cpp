@@ -30,11 +30,11 @@ constexpr std::array kKnownWriters = {
     KnownWriter{"WeatherFlow", {"windlull", "windavg"}, "m/s", "C"},
 };
 
-bool has_column(const CsvLayout& layout, std::string_view name) {
+bool has_column(const Layout& layout, std::string_view name) {
   return std::ranges::any_of(layout.header, [&](const std::string& each) { return joined(words_of(each)) == name; });
 }
 
-void set_where_unknown(CsvLayout& layout, CsvRole role, std::string_view unit, const std::string& source) {
+void set_where_unknown(Layout& layout, Role role, std::string_view unit, const std::string& source) {
   auto& column = layout.columns.at(role);
   if (!column || column->unit) return;
   column->unit = find_unit(dimension_of(role), unit);
@@ -42,7 +42,7 @@ void set_where_unknown(CsvLayout& layout, CsvRole role, std::string_view unit, c
 }
 
 /// Takes the units from the system of units that weewx writes: 1 US, 16 metric, 17 metric with m/s (weewx, "Units").
-void use_weewx_system(CsvLayout& layout) {
+void use_weewx_system(Layout& layout) {
   for (std::size_t i = 0; i < std::min(layout.header.size(), layout.row.size()); ++i) {
     if (joined(words_of(layout.header[i])) != "usunits") continue;
     const auto system = parse_decimal(layout.row[i], 0);
@@ -50,29 +50,29 @@ void use_weewx_system(CsvLayout& layout) {
     if (!is_us && system != 16 && system != 17) return;
     const std::string source = "by the column \"" + layout.header[i] + "\"";
     const std::string_view speed = is_us ? "mph" : (system == 16 ? "km/h" : "m/s");
-    for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust}) set_where_unknown(layout, role, speed, source);
-    set_where_unknown(layout, CsvRole::kTemperature, is_us ? "F" : "C", source);
-    set_where_unknown(layout, CsvRole::kPressure, is_us ? "inHg" : "mbar", source);
-    set_where_unknown(layout, CsvRole::kRainRate, is_us ? "in/h" : (system == 16 ? "cm/h" : "mm/h"), source);
+    for (const Role role : {Role::kSpeed, Role::kGust}) set_where_unknown(layout, role, speed, source);
+    set_where_unknown(layout, Role::kTemperature, is_us ? "F" : "C", source);
+    set_where_unknown(layout, Role::kPressure, is_us ? "inHg" : "mbar", source);
+    set_where_unknown(layout, Role::kRainRate, is_us ? "in/h" : (system == 16 ? "cm/h" : "mm/h"), source);
   }
 }
 
-void use_known_writer(CsvLayout& layout) {
+void use_known_writer(Layout& layout) {
   for (const KnownWriter& writer : kKnownWriters) {
     const bool is_it = std::ranges::all_of(
         writer.columns, [&](std::string_view name) { return name.empty() || has_column(layout, name); });
     if (!is_it) continue;
     const std::string source = "as " + std::string(writer.name) + " writes it";
-    for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust, CsvRole::kU, CsvRole::kV}) {
+    for (const Role role : {Role::kSpeed, Role::kGust, Role::kU, Role::kV}) {
       set_where_unknown(layout, role, writer.speed, source);
     }
-    set_where_unknown(layout, CsvRole::kTemperature, writer.temperature, source);
+    set_where_unknown(layout, Role::kTemperature, writer.temperature, source);
     return;
   }
 }
 
 /// A column without a unit is in that of one beside it.
-void use_unit_beside(CsvLayout& layout, CsvRole role, CsvRole beside) {
+void use_unit_beside(Layout& layout, Role role, Role beside) {
   const auto& known = layout.columns.at(beside);
   auto& column = layout.columns.at(role);
   if (!column || column->unit || !known || !known->unit) return;
@@ -81,18 +81,18 @@ void use_unit_beside(CsvLayout& layout, CsvRole role, CsvRole beside) {
 }
 
 /// "5.4 mph": the fields name it themselves.
-void use_unit_of_fields(CsvLayout& layout) {
+void use_unit_of_fields(Layout& layout) {
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     auto& column = layout.columns.by_role[index];
     if (!column || column->unit || column->index >= layout.row.size()) continue;
-    const auto number = parse_number(layout.row[column->index], dimension_of(static_cast<CsvRole>(index)));
+    const auto number = parse_number(layout.row[column->index], dimension_of(static_cast<Role>(index)));
     if (!number || !number->unit) continue;
     column->unit = number->unit;
     column->unit_source = "from its fields";
   }
 }
 
-void set_by_option(CsvLayout& layout, CsvRole role, const std::optional<CsvUnit>& unit, const char* option) {
+void set_by_option(Layout& layout, Role role, const std::optional<Unit>& unit, const char* option) {
   auto& column = layout.columns.at(role);
   if (!column || !unit) return;
   column->unit = unit;
@@ -101,24 +101,24 @@ void set_by_option(CsvLayout& layout, CsvRole role, const std::optional<CsvUnit>
 
 }  // namespace
 
-void choose_units(CsvLayout& layout, const CsvImportOptions& options) {
-  for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust, CsvRole::kU, CsvRole::kV, CsvRole::kVerticalSpeed}) {
+void choose_units(Layout& layout, const ImportOptions& options) {
+  for (const Role role : {Role::kSpeed, Role::kGust, Role::kU, Role::kV, Role::kVerticalSpeed}) {
     set_by_option(layout, role, options.unit, "--unit");
   }
-  set_by_option(layout, CsvRole::kGust, options.gust_unit, "--gust-unit");
+  set_by_option(layout, Role::kGust, options.gust_unit, "--gust-unit");
   use_unit_of_fields(layout);
   use_weewx_system(layout);
   use_known_writer(layout);
-  use_unit_beside(layout, CsvRole::kGust, CsvRole::kSpeed);
-  use_unit_beside(layout, CsvRole::kSpeed, CsvRole::kGust);
-  use_unit_beside(layout, CsvRole::kU, CsvRole::kV);
-  use_unit_beside(layout, CsvRole::kV, CsvRole::kU);
-  use_unit_beside(layout, CsvRole::kVerticalSpeed, CsvRole::kU);
+  use_unit_beside(layout, Role::kGust, Role::kSpeed);
+  use_unit_beside(layout, Role::kSpeed, Role::kGust);
+  use_unit_beside(layout, Role::kU, Role::kV);
+  use_unit_beside(layout, Role::kV, Role::kU);
+  use_unit_beside(layout, Role::kVerticalSpeed, Role::kU);
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     auto& column = layout.columns.by_role[index];
-    const auto role = static_cast<CsvRole>(index);
-    if (!column || column->unit || dimension_of(role) == CsvDimension::kNone || role == CsvRole::kTime ||
-        role == CsvRole::kElapsed) {
+    const auto role = static_cast<Role>(index);
+    if (!column || column->unit || dimension_of(role) == Dimension::kNone || role == Role::kTime ||
+        role == Role::kElapsed) {
       continue;
     }
     column->unit = base_unit(dimension_of(role));

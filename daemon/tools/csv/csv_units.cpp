@@ -13,7 +13,7 @@ namespace {
 
 struct NamedUnit {
   std::string_view plain;  ///< in lower case, without punctuation
-  CsvUnit unit;
+  Unit unit;
 };
 
 /// The words of drivers/decode, in lower case and without punctuation, and those of tables only.
@@ -36,18 +36,18 @@ std::span<const NamedUnit> speed_units() {
   return kUnits;
 }
 
-constexpr CsvUnit kDegrees{"degrees"};
-constexpr CsvUnit kRadians{"radians", 1.0 / kRadPerDeg};
+constexpr Unit kDegrees{"degrees"};
+constexpr Unit kRadians{"radians", 1.0 / kRadPerDeg};
 constexpr std::array kDirectionUnits = {
     NamedUnit{"deg", kDegrees},          NamedUnit{"degree", kDegrees},      NamedUnit{"degrees", kDegrees},
     NamedUnit{"degt", kDegrees},         NamedUnit{"degn", kDegrees},        NamedUnit{"degfromn", kDegrees},
     NamedUnit{"degreesnorth", kDegrees}, NamedUnit{"degreestrue", kDegrees}, NamedUnit{"rad", kRadians},
     NamedUnit{"radian", kRadians},       NamedUnit{"radians", kRadians}};
 
-constexpr CsvUnit kCelsius{"C"};
-constexpr CsvUnit kFahrenheit{"F", 5.0 / 9.0, -32.0 * 5.0 / 9.0};
-constexpr CsvUnit kKelvin{"K", 1.0, -273.15};
-constexpr CsvUnit kTenthsOfCelsius{"0.1 C", 0.1};
+constexpr Unit kCelsius{"C"};
+constexpr Unit kFahrenheit{"F", 5.0 / 9.0, -32.0 * 5.0 / 9.0};
+constexpr Unit kKelvin{"K", 1.0, -273.15};
+constexpr Unit kTenthsOfCelsius{"0.1 C", 0.1};
 constexpr std::array kTemperatureUnits = {NamedUnit{"c", kCelsius},
                                           NamedUnit{"degc", kCelsius},
                                           NamedUnit{"celsius", kCelsius},
@@ -63,12 +63,12 @@ constexpr std::array kTemperatureUnits = {NamedUnit{"c", kCelsius},
                                           NamedUnit{"01degreescelsius", kTenthsOfCelsius},
                                           NamedUnit{"01c", kTenthsOfCelsius}};
 
-constexpr CsvUnit kHectopascals{"hPa"};
-constexpr CsvUnit kPascals{"Pa", 0.01};
-constexpr CsvUnit kKilopascals{"kPa", 10.0};
-constexpr CsvUnit kInchesOfMercury{"inHg", 33.8638866667};  // of 0 degrees Celsius: NIST SP 811, appendix B.8
-constexpr CsvUnit kMillimetresOfMercury{"mmHg", 1.33322387415};
-constexpr CsvUnit kTenthsOfHectopascals{"0.1 hPa", 0.1};
+constexpr Unit kHectopascals{"hPa"};
+constexpr Unit kPascals{"Pa", 0.01};
+constexpr Unit kKilopascals{"kPa", 10.0};
+constexpr Unit kInchesOfMercury{"inHg", 33.8638866667};  // of 0 degrees Celsius: NIST SP 811, appendix B.8
+constexpr Unit kMillimetresOfMercury{"mmHg", 1.33322387415};
+constexpr Unit kTenthsOfHectopascals{"0.1 hPa", 0.1};
 constexpr std::array kPressureUnits = {
     NamedUnit{"hpa", kHectopascals},          NamedUnit{"mb", kHectopascals},
     NamedUnit{"mbar", kHectopascals},         NamedUnit{"pa", kPascals},
@@ -76,43 +76,42 @@ constexpr std::array kPressureUnits = {
     NamedUnit{"in", kInchesOfMercury},        NamedUnit{"mmhg", kMillimetresOfMercury},
     NamedUnit{"01hpa", kTenthsOfHectopascals}};
 
-constexpr std::array kHumidityUnits = {NamedUnit{"percent", CsvUnit{"percent"}}, NamedUnit{"pct", CsvUnit{"percent"}},
-                                       NamedUnit{"rh", CsvUnit{"percent"}}};
+constexpr std::array kHumidityUnits = {NamedUnit{"percent", Unit{"percent"}}, NamedUnit{"pct", Unit{"percent"}},
+                                       NamedUnit{"rh", Unit{"percent"}}};
 
 constexpr double kMillimetresPerInch = 25.4;
-constexpr std::array kRainUnits = {NamedUnit{"mm", CsvUnit{"mm"}},
-                                   NamedUnit{"millimeters", CsvUnit{"mm"}},
-                                   NamedUnit{"cm", CsvUnit{"cm", 10.0}},
-                                   NamedUnit{"in", CsvUnit{"in", kMillimetresPerInch}},
-                                   NamedUnit{"inch", CsvUnit{"in", kMillimetresPerInch}},
-                                   NamedUnit{"inches", CsvUnit{"in", kMillimetresPerInch}}};
+constexpr std::array kRainUnits = {NamedUnit{"mm", Unit{"mm"}},
+                                   NamedUnit{"millimeters", Unit{"mm"}},
+                                   NamedUnit{"cm", Unit{"cm", 10.0}},
+                                   NamedUnit{"in", Unit{"in", kMillimetresPerInch}},
+                                   NamedUnit{"inch", Unit{"in", kMillimetresPerInch}},
+                                   NamedUnit{"inches", Unit{"in", kMillimetresPerInch}}};
 constexpr std::array kRainRateUnits = {
-    NamedUnit{"mmh", CsvUnit{"mm/h"}}, NamedUnit{"mmhr", CsvUnit{"mm/h"}}, NamedUnit{"cmh", CsvUnit{"cm/h", 10.0}},
-    NamedUnit{"inh", CsvUnit{"in/h", kMillimetresPerInch}}, NamedUnit{"inhr", CsvUnit{"in/h", kMillimetresPerInch}}};
+    NamedUnit{"mmh", Unit{"mm/h"}}, NamedUnit{"mmhr", Unit{"mm/h"}}, NamedUnit{"cmh", Unit{"cm/h", 10.0}},
+    NamedUnit{"inh", Unit{"in/h", kMillimetresPerInch}}, NamedUnit{"inhr", Unit{"in/h", kMillimetresPerInch}}};
 
-constexpr std::array kTimeUnits = {NamedUnit{"ms", CsvUnit{"ms"}}, NamedUnit{"s", CsvUnit{"s"}},
-                                   NamedUnit{"sec", CsvUnit{"s"}}, NamedUnit{"seconds", CsvUnit{"s"}},
-                                   NamedUnit{"milliseconds", CsvUnit{"ms"}}};
+constexpr std::array kTimeUnits = {NamedUnit{"ms", Unit{"ms"}}, NamedUnit{"s", Unit{"s"}}, NamedUnit{"sec", Unit{"s"}},
+                                   NamedUnit{"seconds", Unit{"s"}}, NamedUnit{"milliseconds", Unit{"ms"}}};
 
-std::span<const NamedUnit> units_of(CsvDimension dimension) {
+std::span<const NamedUnit> units_of(Dimension dimension) {
   switch (dimension) {
-    case CsvDimension::kTime:
+    case Dimension::kTime:
       return kTimeUnits;
-    case CsvDimension::kSpeed:
+    case Dimension::kSpeed:
       return speed_units();
-    case CsvDimension::kDirection:
+    case Dimension::kDirection:
       return kDirectionUnits;
-    case CsvDimension::kTemperature:
+    case Dimension::kTemperature:
       return kTemperatureUnits;
-    case CsvDimension::kPressure:
+    case Dimension::kPressure:
       return kPressureUnits;
-    case CsvDimension::kHumidity:
+    case Dimension::kHumidity:
       return kHumidityUnits;
-    case CsvDimension::kRain:
+    case Dimension::kRain:
       return kRainUnits;
-    case CsvDimension::kRainRate:
+    case Dimension::kRainRate:
       return kRainRateUnits;
-    case CsvDimension::kNone:
+    case Dimension::kNone:
       break;
   }
   return {};
@@ -120,7 +119,7 @@ std::span<const NamedUnit> units_of(CsvDimension dimension) {
 
 }  // namespace
 
-std::optional<CsvUnit> find_unit(CsvDimension dimension, std::string_view text) {
+std::optional<Unit> find_unit(Dimension dimension, std::string_view text) {
   const std::string plain = joined(words_of(text));
   for (const NamedUnit& each : units_of(dimension)) {
     if (each.plain == plain) return each.unit;
@@ -128,9 +127,9 @@ std::optional<CsvUnit> find_unit(CsvDimension dimension, std::string_view text) 
   return std::nullopt;
 }
 
-CsvUnit base_unit(CsvDimension dimension) {
+Unit base_unit(Dimension dimension) {
   const std::span<const NamedUnit> units = units_of(dimension);
-  return units.empty() ? CsvUnit{} : units.front().unit;
+  return units.empty() ? Unit{} : units.front().unit;
 }
 
 }  // namespace yuragi::daemon::tools::csv

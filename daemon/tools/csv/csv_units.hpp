@@ -9,7 +9,7 @@
 namespace yuragi::daemon::tools::csv {
 
 /// What a column of numbers measures, as far as its units go.
-enum class CsvDimension : std::uint8_t {
+enum class Dimension : std::uint8_t {
   kNone,         ///< no unit, or one that does not matter
   kTime,         ///< milliseconds and the like
   kSpeed,        ///< in m/s
@@ -21,8 +21,8 @@ enum class CsvDimension : std::uint8_t {
   kRainRate,     ///< in mm/h
 };
 
-/// A unit: value * factor + offset is in the unit that CsvDimension names.
-struct CsvUnit {
+/// A unit: value * factor + offset is in the unit that Dimension names.
+struct Unit {
   std::string_view name;  ///< of static storage duration
   double factor = 1.0;
   double offset = 0.0;
@@ -30,14 +30,14 @@ struct CsvUnit {
 
 /// Returns the unit that a text names, in any case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nullopt
 /// if it is not a unit of this dimension. Thread-safe: yes.
-std::optional<CsvUnit> find_unit(CsvDimension dimension, std::string_view text);
+std::optional<Unit> find_unit(Dimension dimension, std::string_view text);
 
 /// The unit of speed that a text is.
-inline std::optional<CsvUnit> find_speed_unit(std::string_view text) {
-  return find_unit(CsvDimension::kSpeed, text);
+inline std::optional<Unit> find_speed_unit(std::string_view text) {
+  return find_unit(Dimension::kSpeed, text);
 }
 
 /// Returns the unit that is assumed if none is given: the dimension's own.
-CsvUnit base_unit(CsvDimension dimension);
+Unit base_unit(Dimension dimension);
 
 }  // namespace yuragi::daemon::tools::csv

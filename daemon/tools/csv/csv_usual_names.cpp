@@ -198,37 +198,37 @@ constexpr auto kRainRateNames = std::to_array<std::string_view>(
 
 }  // namespace
 
-std::span<const std::string_view> usual_names(CsvRole role) {
+std::span<const std::string_view> usual_names(Role role) {
   switch (role) {
-    case CsvRole::kTime:
+    case Role::kTime:
       return kTimeNames;
-    case CsvRole::kDate:
+    case Role::kDate:
       return kDateNames;
-    case CsvRole::kSpeed:
+    case Role::kSpeed:
       return kSpeedNames;
-    case CsvRole::kDirection:
+    case Role::kDirection:
       return kDirectionNames;
-    case CsvRole::kGust:
+    case Role::kGust:
       return kGustNames;
-    case CsvRole::kU:
+    case Role::kU:
       return kUNames;
-    case CsvRole::kV:
+    case Role::kV:
       return kVNames;
-    case CsvRole::kVerticalSpeed:
+    case Role::kVerticalSpeed:
       return kVerticalNames;
-    case CsvRole::kTemperature:
+    case Role::kTemperature:
       return kTemperatureNames;
-    case CsvRole::kPressure:
+    case Role::kPressure:
       return kPressureNames;
-    case CsvRole::kHumidity:
+    case Role::kHumidity:
       return kHumidityNames;
-    case CsvRole::kRainTotal:
+    case Role::kRainTotal:
       return kRainTotalNames;
-    case CsvRole::kRainRate:
+    case Role::kRainRate:
       return kRainRateNames;
-    case CsvRole::kElapsed:
-    case CsvRole::kQuality:
-    case CsvRole::kSensor:
+    case Role::kElapsed:
+    case Role::kQuality:
+    case Role::kSensor:
       break;  // only in yuragi's own exports
   }
   return {};

@@ -7,8 +7,8 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// What loggers, stations and archives commonly call a column of this role, as CsvName::stem; the first that is found
+/// What loggers, stations and archives commonly call a column of this role, as Name::stem; the first that is found
 /// is used. Sources: drivers/SOURCES.md S12.
-std::span<const std::string_view> usual_names(CsvRole role);
+std::span<const std::string_view> usual_names(Role role);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -14,24 +14,24 @@ bool is_one_of(double value, std::initializer_list<double> marks) {
 }
 
 /// Returns true if it is a realistic value for such a column, in base units.
-bool can_be(CsvRole role, double base) {
+bool can_be(Role role, double base) {
   constexpr double kMaxSpeed_m_s = 60.0;
   switch (dimension_of(role)) {
-    case CsvDimension::kSpeed:
-      return std::abs(base) < kMaxSpeed_m_s && (base >= 0.0 || (role != CsvRole::kSpeed && role != CsvRole::kGust));
-    case CsvDimension::kDirection:
+    case Dimension::kSpeed:
+      return std::abs(base) < kMaxSpeed_m_s && (base >= 0.0 || (role != Role::kSpeed && role != Role::kGust));
+    case Dimension::kDirection:
       return base >= -180.0 && base <= 360.0;
-    case CsvDimension::kTemperature:
+    case Dimension::kTemperature:
       return base > -65.0 && base < 60.0;
-    case CsvDimension::kPressure:
+    case Dimension::kPressure:
       return base >= 300.0 && base <= 1100.0;
-    case CsvDimension::kHumidity:
+    case Dimension::kHumidity:
       return base >= 0.0 && base <= 110.0;
-    case CsvDimension::kRain:
-    case CsvDimension::kRainRate:
+    case Dimension::kRain:
+    case Dimension::kRainRate:
       return base >= 0.0 && base < 999.0;
-    case CsvDimension::kTime:
-    case CsvDimension::kNone:
+    case Dimension::kTime:
+    case Dimension::kNone:
       break;
   }
   return true;
@@ -39,7 +39,7 @@ bool can_be(CsvRole role, double base) {
 
 }  // namespace
 
-std::optional<CsvNumber> parse_number(std::string_view text, CsvDimension dimension) {
+std::optional<Number> parse_number(std::string_view text, Dimension dimension) {
   if (text.starts_with('+')) text.remove_prefix(1);
   constexpr std::size_t kLongest = 40;
   if (text.size() > kLongest) return std::nullopt;
@@ -49,11 +49,11 @@ std::optional<CsvNumber> parse_number(std::string_view text, CsvDimension dimens
   const char* const end = plain.data() + text.size();
   const auto [stop, error] = std::from_chars(plain.data(), end, value);
   if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
-  CsvNumber number{value, std::nullopt};
+  Number number{value, std::nullopt};
   if (stop == end) return number;
   const std::string_view rest = without_blanks(text.substr(static_cast<std::size_t>(stop - plain.data())));
   // "270°" needs no unit.
-  if (dimension == CsvDimension::kDirection && (rest == "\xC2\xB0" || rest == "\xB0")) return number;
+  if (dimension == Dimension::kDirection && (rest == "\xC2\xB0" || rest == "\xB0")) return number;
   number.unit = find_unit(dimension, rest);
   if (!number.unit) return std::nullopt;
   return number;
@@ -73,9 +73,9 @@ bool is_missing_word(std::string_view text) {
   return std::ranges::find(kWords, lower(text)) != kWords.end();
 }
 
-bool is_missing_number(CsvRole role, double value, double base) {
-  if (role == CsvRole::kElapsed || can_be(role, base)) return false;
-  if (role == CsvRole::kDirection && value == 990.0) return true;
+bool is_missing_number(Role role, double value, double base) {
+  if (role == Role::kElapsed || can_be(role, base)) return false;
+  if (role == Role::kDirection && value == 990.0) return true;
   // Above zero, two digits may be a wind in a storm: is_possible_mark().
   constexpr double kMinMark = 888.0;
   if (value > 0.0 && value < kMinMark) return false;
@@ -83,8 +83,8 @@ bool is_missing_number(CsvRole role, double value, double base) {
                                      9999.9, 9999.99, 32767.0, 32768.0, 65535.0, 99999.0, 99999.9, 999999.0});
 }
 
-bool is_possible_mark(CsvRole role, double value) {
-  if (role == CsvRole::kHumidity) return is_one_of(value, {255.0});
+bool is_possible_mark(Role role, double value) {
+  if (role == Role::kHumidity) return is_one_of(value, {255.0});
   return is_one_of(value, {99.0, 99.9, 99.99, 255.0, 327.67, 655.35, 409.5, 102.3, 511.0, 1023.0});
 }
 

@@ -9,11 +9,11 @@
 
 namespace yuragi::daemon::tools::csv {
 
-Result<CsvZone, Failure> CsvZone::parse(std::string_view text) {
-  CsvZone zone;
+Result<Zone, Failure> Zone::parse(std::string_view text) {
+  Zone zone;
   zone.name_ = without_blanks(text);
   // As it would stand behind a time.
-  const auto written = parse_time("2000-01-01 00:00 " + zone.name_, CsvTimeFormat::kIso);
+  const auto written = parse_time("2000-01-01 00:00 " + zone.name_, TimeFormat::kIso);
   if (written && written->utc_offset) {
     zone.offset_ = *written->utc_offset;
     return zone;
@@ -30,7 +30,7 @@ Result<CsvZone, Failure> CsvZone::parse(std::string_view text) {
   }
 }
 
-std::optional<UtcTime> CsvZone::to_utc(UtcTime clock, std::optional<UtcTime> last) const {
+std::optional<UtcTime> Zone::to_utc(UtcTime clock, std::optional<UtcTime> last) const {
   if (zone_ == nullptr) return clock - offset_;
   const date::local_info info =
       zone_->get_info(date::local_seconds(std::chrono::floor<std::chrono::seconds>(clock).time_since_epoch()));

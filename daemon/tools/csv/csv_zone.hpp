@@ -15,12 +15,12 @@ namespace yuragi::daemon::tools::csv {
 
 /// The zone of a file's times: an offset from UTC, or a place whose clocks change in spring and autumn. Thread-safe:
 /// yes.
-class CsvZone {
+class Zone {
  public:
-  CsvZone() = default;  ///< UTC
+  Zone() = default;  ///< UTC
 
   /// "UTC", "+02:00", "UTC-7", "Europe/Berlin". Fails, with what is allowed, for anything else.
-  static Result<CsvZone, Failure> parse(std::string_view text);
+  static Result<Zone, Failure> parse(std::string_view text);
 
   /// When the clock showed this time. An hour that comes twice, at the change to winter time, is the first one, or the
   /// second if the first would not be after `last`. Nullopt for an hour that is skipped in spring.

@@ -18,7 +18,7 @@ namespace {
 
 namespace decode = drivers::decode;
 
-std::string_view text_of(CsvLines& lines) {
+std::string_view text_of(Lines& lines) {
   const std::span<char> line = lines.line();
   return {line.data(), line.size()};
 }
@@ -33,7 +33,7 @@ struct LogContents {
 
 LogContents contents_of(std::istream& in, const LineLogOptions& options) {
   LogContents contents;
-  CsvLines lines(in, 0);
+  Lines lines(in, 0);
   NmeaClock clock;
   while (lines.next()) {
     if (clock.take(text_of(lines))) contents.has_clock = true;
@@ -75,7 +75,7 @@ std::string chosen_source(const LogContents& contents, const LineLogOptions& opt
 
 class LogImport {
  public:
-  LogImport(const std::string& name, const LineLogOptions& options, const CsvSinks& sinks, std::string source,
+  LogImport(const std::string& name, const LineLogOptions& options, const Sinks& sinks, std::string source,
             bool has_leading_times)
       : name_(name),
         options_(options),
@@ -83,8 +83,8 @@ class LogImport {
         source_(std::move(source)),
         has_leading_times_(has_leading_times) {}
 
-  Result<CsvImportReport, Failure> run(std::istream& in) {
-    CsvLines lines(in, 0);
+  Result<ImportReport, Failure> run(std::istream& in) {
+    Lines lines(in, 0);
     while (lines.next()) {
       const std::string_view line = text_of(lines);
       clock_.take(line);
@@ -100,7 +100,7 @@ class LogImport {
       ++report_.rows;
       const auto taken = take(*message);
       if (!taken) {
-        if (report_.first_refusals.size() < CsvImportReport::kMaxRefusalsListed) {
+        if (report_.first_refusals.size() < ImportReport::kMaxRefusalsListed) {
           report_.first_refusals.push_back(fmt::format("{}:{}: {}", name_, lines.number(), taken.error().message));
         }
         if (options_.strict) return Failure{report_.first_refusals.front()};
@@ -124,7 +124,7 @@ class LogImport {
       const auto written = leading_time(message.prefix, options_.time_format);
       if (!written) return Failure{"no time before the message"};
       if (written->utc_offset) return written->clock - *written->utc_offset;
-      const auto utc = options_.zone.value_or(CsvZone()).to_utc(written->clock, last_);
+      const auto utc = options_.zone.value_or(Zone()).to_utc(written->clock, last_);
       if (!utc) return Failure{"a time that does not exist in the zone; check --zone"};
       return *utc;
     }
@@ -138,7 +138,7 @@ class LogImport {
     const auto utc = time_of(message);
     if (!utc) return utc.error();
     if (last_ && *utc < *last_) return Failure{"time goes back"};
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time = {MonoTime(*utc - first_.value_or(*utc)), *utc};
     reading.speed_m_s = *message.wind->speed_m_s;
     reading.direction_deg = message.wind->direction_deg;
@@ -168,7 +168,7 @@ class LogImport {
 
   const std::string& name_;
   const LineLogOptions& options_;
-  const CsvSinks& sinks_;
+  const Sinks& sinks_;
   std::string source_;
   bool has_leading_times_;
   NmeaClock clock_;
@@ -177,7 +177,7 @@ class LogImport {
   Instant last_time_;
   std::size_t same_time_ = 0;
   std::size_t passed_over_ = 0;
-  CsvImportReport report_;
+  ImportReport report_;
 };
 
 }  // namespace
@@ -194,8 +194,8 @@ bool looks_like_line_log(const std::vector<std::string>& lines) {
   return messages > others;
 }
 
-Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::string& name,
-                                                 const LineLogOptions& options, const CsvSinks& sinks) {
+Result<ImportReport, Failure> import_line_log(Input& input, const std::string& name, const LineLogOptions& options,
+                                              const Sinks& sinks) {
   const LogContents contents = contents_of(input.first_pass(), options);
   if (contents.messages == 0) {
     return Failure{name +
@@ -220,7 +220,7 @@ Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::str
   }
   columns.push_back(has_start           ? "time from --start and --interval"
                     : has_leading_times ? fmt::format("time from before the messages, in {} if it names no zone",
-                                                      options.zone.value_or(CsvZone()).name())
+                                                      options.zone.value_or(Zone()).name())
                                         : "time from RMC, ZDA, GLL or GGA, which may be up to their interval old");
   report->columns = std::move(columns);
   return report;

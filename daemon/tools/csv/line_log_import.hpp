@@ -12,8 +12,8 @@
 namespace yuragi::daemon::tools::csv {
 
 struct LineLogOptions {
-  CsvTimeFormat time_format = CsvTimeFormat::kAuto;
-  std::optional<CsvZone> zone;          ///< of times that name none; empty: UTC
+  TimeFormat time_format = TimeFormat::kAuto;
+  std::optional<Zone> zone;             ///< of times that name none; empty: UTC
   std::optional<UtcTime> start;         ///< of the first reading, if the log has no times
   std::optional<Nanoseconds> interval;  ///< from one reading to the next, if the log has no times
   std::string sentence;                 ///< take this one ("MWD"); empty: the best that the log has
@@ -30,7 +30,7 @@ bool looks_like_line_log(const std::vector<std::string>& lines);
 ///
 /// Fails, with the option that helps, if no line has a wind or no time is found. Otherwise as
 /// import_csv().
-Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::string& name,
-                                                 const LineLogOptions& options, const CsvSinks& sinks);
+Result<ImportReport, Failure> import_line_log(Input& input, const std::string& name, const LineLogOptions& options,
+                                              const Sinks& sinks);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -16,7 +16,7 @@ std::optional<Nanoseconds> time_of_day_in(std::string_view field) {
   if (field.size() < 6) return std::nullopt;
   const std::string text = "2000-01-01 " + std::string(field.substr(0, 2)) + ":" + std::string(field.substr(2, 2)) +
                            ":" + std::string(field.substr(4));
-  const auto time = parse_time(text, CsvTimeFormat::kIso);
+  const auto time = parse_time(text, TimeFormat::kIso);
   constexpr std::chrono::sys_days kDay = std::chrono::year(2000) / 1 / 1;
   if (!time || time->utc_offset) return std::nullopt;
   return time->clock - UtcTime(kDay);
@@ -24,13 +24,13 @@ std::optional<Nanoseconds> time_of_day_in(std::string_view field) {
 
 std::optional<std::chrono::sys_days> day_in(std::string_view day, std::string_view month, std::string_view year) {
   const auto time =
-      parse_time(std::string(day) + "/" + std::string(month) + "/" + std::string(year), CsvTimeFormat::kDayFirst);
+      parse_time(std::string(day) + "/" + std::string(month) + "/" + std::string(year), TimeFormat::kDayFirst);
   if (!time) return std::nullopt;
   return std::chrono::floor<std::chrono::days>(time->clock);
 }
 
 /// The field "c" of a tag block: seconds since 1970, or milliseconds.
-std::optional<CsvTime> tag_block_time(std::string_view prefix) {
+std::optional<Time> tag_block_time(std::string_view prefix) {
   for (const std::string_view key : {"\\c:", ",c:"}) {
     const auto at = prefix.find(key);
     if (at == std::string_view::npos) continue;
@@ -41,13 +41,13 @@ std::optional<CsvTime> tag_block_time(std::string_view prefix) {
   return std::nullopt;
 }
 
-std::optional<CsvTime> time_in(std::string_view text, CsvTimeFormat format) {
-  if (format != CsvTimeFormat::kAuto) return parse_time(text, format);
-  if (const auto compact = parse_time(text, CsvTimeFormat::kCompact); compact && text.size() >= 12) return compact;
+std::optional<Time> time_in(std::string_view text, TimeFormat format) {
+  if (format != TimeFormat::kAuto) return parse_time(text, format);
+  if (const auto compact = parse_time(text, TimeFormat::kCompact); compact && text.size() >= 12) return compact;
   if (const auto count = guess_count_format(text)) {
-    return *count == CsvTimeFormat::kSeconds ? std::nullopt : parse_time(text, *count);
+    return *count == TimeFormat::kSeconds ? std::nullopt : parse_time(text, *count);
   }
-  return parse_time(text, CsvTimeFormat::kIso);
+  return parse_time(text, TimeFormat::kIso);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ bool NmeaClock::set_time_of_day(Nanoseconds time_of_day) {
   return true;
 }
 
-std::optional<CsvTime> leading_time(std::string_view prefix, CsvTimeFormat format) {
+std::optional<Time> leading_time(std::string_view prefix, TimeFormat format) {
   if (const auto time = tag_block_time(prefix)) return time;
   constexpr std::string_view kAround = " \t,;|>[](){}\"'\x02";
   const auto begin = prefix.find_first_not_of(kAround);

@@ -11,8 +11,8 @@ namespace yuragi::daemon::tools::decode {
 namespace {
 
 struct RequestedRegisters {
-  drivers::decode::modbus::ModbusFraming framing = drivers::decode::modbus::ModbusFraming::kRtu;
-  drivers::decode::modbus::ModbusRequest request;
+  drivers::decode::modbus::Framing framing = drivers::decode::modbus::Framing::kRtu;
+  drivers::decode::modbus::Request request;
 };
 
 /// Parses a request to read registers, of RTU or TCP by its format. Nullopt for anything else.
@@ -23,10 +23,10 @@ std::optional<RequestedRegisters> requested_registers_of(drivers::decode::ByteSp
   RequestedRegisters requested;
   if (bytes.size() == kRtuRequest &&
       drivers::decode::modbus::modbus_crc(bytes.first(6)) == drivers::decode::little_endian_16(bytes, 6)) {
-    requested.framing = drivers::decode::modbus::ModbusFraming::kRtu;
+    requested.framing = drivers::decode::modbus::Framing::kRtu;
   } else if (bytes.size() == kTcpRequest && drivers::decode::big_endian_16(bytes, 2) == 0 &&
              drivers::decode::big_endian_16(bytes, 4) == 6) {
-    requested.framing = drivers::decode::modbus::ModbusFraming::kTcp;
+    requested.framing = drivers::decode::modbus::Framing::kTcp;
     requested.request.transaction = drivers::decode::big_endian_16(bytes, 0);
     bytes = bytes.subspan(kTcpHeader);
   } else {
@@ -43,9 +43,9 @@ std::optional<RequestedRegisters> requested_registers_of(drivers::decode::ByteSp
 }
 
 /// The part of a reply that belongs to `quantity`; empty if it was not requested.
-std::span<const std::uint16_t> registers_of(const drivers::decode::modbus::ModbusQuantity& quantity,
-                                            const drivers::decode::modbus::ModbusRequest& request,
-                                            const drivers::decode::modbus::ModbusRegisters& registers) {
+std::span<const std::uint16_t> registers_of(const drivers::decode::modbus::Quantity& quantity,
+                                            const drivers::decode::modbus::Request& request,
+                                            const drivers::decode::modbus::Registers& registers) {
   const std::size_t count = drivers::decode::modbus::register_count(quantity.type);
   const bool is_polled = request.unit == quantity.slave && request.function == quantity.function &&
                          request.address <= quantity.address &&
@@ -56,7 +56,7 @@ std::span<const std::uint16_t> registers_of(const drivers::decode::modbus::Modbu
 
 class ModbusUnitDecoder final : public UnitDecoder {
  public:
-  explicit ModbusUnitDecoder(drivers::modbus::ModbusProfile profile) : profile_(std::move(profile)) {}
+  explicit ModbusUnitDecoder(drivers::modbus::Profile profile) : profile_(std::move(profile)) {}
 
   void take(const RawUnit& unit, const Sink& sink) override {
     if (unit.request.empty()) {
@@ -70,7 +70,7 @@ class ModbusUnitDecoder final : public UnitDecoder {
     }
     const auto registers = drivers::decode::modbus::decode_modbus(requested->framing, requested->request, unit.bytes);
     if (!registers) {
-      const drivers::decode::modbus::ModbusRefusal& refusal = registers.error();
+      const drivers::decode::modbus::RefusedReply& refusal = registers.error();
       const bool is_exception = refusal.why == drivers::decode::Refusal::kException;
       return sink(UnitRefusal{
           refusal.why, is_exception ? fmt::format("{}, {}", refusal.exception,
@@ -82,12 +82,12 @@ class ModbusUnitDecoder final : public UnitDecoder {
 
  private:
   /// One reading of all quantities in the reply; refusals of single ones are reported, too.
-  void describe_reply(const drivers::decode::modbus::ModbusRequest& request,
-                      const drivers::decode::modbus::ModbusRegisters& registers, const Sink& sink) const {
+  void describe_reply(const drivers::decode::modbus::Request& request,
+                      const drivers::decode::modbus::Registers& registers, const Sink& sink) const {
     UnitReading reading;
     bool holds_any = false;
-    const auto take_value = [&](const drivers::decode::modbus::ModbusQuantity& quantity, const char* what,
-                                const auto& decode, std::optional<double>& value) {
+    const auto take_value = [&](const drivers::decode::modbus::Quantity& quantity, const char* what, const auto& decode,
+                                std::optional<double>& value) {
       const auto own = registers_of(quantity, request, registers);
       if (own.empty()) return;
       holds_any = true;
@@ -118,13 +118,13 @@ class ModbusUnitDecoder final : public UnitDecoder {
     }
   }
 
-  drivers::modbus::ModbusProfile profile_;
+  drivers::modbus::Profile profile_;
 };
 
 }  // namespace
 
 std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options) {
-  drivers::modbus::ModbusProfile profile = drivers::modbus::load_modbus_profile(options.profile, "");
+  drivers::modbus::Profile profile = drivers::modbus::load_modbus_profile(options.profile, "");
   if (options.speed_slave != 0) drivers::modbus::set_slave(profile, static_cast<std::uint8_t>(options.speed_slave));
   if (options.direction_slave != 0) {
     if (!profile.direction) throw std::runtime_error("profile \"" + profile.name + "\" has no direction");

@@ -257,7 +257,7 @@ std::optional<std::vector<std::string>> present_monitors() {
 void rehearse_monitors(std::vector<Finding>& all, const settings::Config& config) {
   std::optional<std::vector<std::string>> present;
   bool is_asked = false;
-  for (const output::OutputTable& table : config.outputs) {
+  for (const output::Table& table : config.outputs) {
     for (const output::Window& window : table.output.windows) {
       if (window.monitor.empty()) continue;
       if (!is_asked) present = present_monitors();

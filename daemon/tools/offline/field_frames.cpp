@@ -18,7 +18,7 @@ constexpr double kMinTickRate_hz = 50.0;
 
 }  // namespace
 
-void make_spectral_frames(wind::field::SpectralWindField& field, const wind::field::FieldGrid& grid,
+void make_spectral_frames(wind::field::SpectralWindField& field, const wind::field::Grid& grid,
                           const FieldFrames& frames, const UseField& use) {
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   for (std::size_t frame = 0; frame < frames.count; ++frame) {
@@ -30,28 +30,28 @@ void make_spectral_frames(wind::field::SpectralWindField& field, const wind::fie
 
 Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording,
                                            const drivers::windlog::PlaybackOptions& playback_options,
-                                           const settings::Config& config, const wind::field::FieldGrid& grid,
+                                           const settings::Config& config, const wind::field::Grid& grid,
                                            const FieldFrames& frames, const UseField& use) {
-  auto opened = drivers::windlog::WindlogPlayback::open(recording, playback_options);
+  auto opened = drivers::windlog::Playback::open(recording, playback_options);
   if (!opened) return opened.error();
-  drivers::windlog::WindlogPlayback& playback = *opened;
+  drivers::windlog::Playback& playback = *opened;
   const std::shared_ptr<const wind::turbulence::GustNoise> noise = sensing::make_gust_noise(config);
   settings::Config of_recording = config;
   set_value(of_recording.sensors.at(0), sensing::recorded_source(recording, playback_options.sensor).value);
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(of_recording, noise, grid.reach_m());
   wind::ground::WindTapes tapes;
-  wind::ground::GroundWind ground;
+  wind::ground::Wind ground;
   const wind::field::GroundWindField field(ground, *noise);
 
   // Several ticks per frame. A frame is that of the first tick at its time or after it.
-  OfflineWindOptions offline;
+  WindOptions offline;
   offline.rate_hz = frames.rate_hz * std::ceil(kMinTickRate_hz / frames.rate_hz);
   offline.rules = sensing::jury_rules_of(of_recording.sensors[0]);
   const double tick_s = 1.0 / offline.rate_hz;
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());
   std::size_t next = 0;
-  const auto result = run_offline(playback, estimator, offline, [&](double time_s, const wind::WindState& state) {
+  const auto result = run_offline(playback, estimator, offline, [&](double time_s, const wind::State& state) {
     ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
     if (next == frames.count || time_s < frames.time_s(next) - 0.01 * tick_s) return;
     wind::field::sample_field(field, grid, values);

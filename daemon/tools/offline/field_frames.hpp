@@ -26,7 +26,7 @@ struct FieldFrames {
 using UseField = std::function<void(std::span<const float> values)>;
 
 /// The frames of a wind with given statistics.
-void make_spectral_frames(wind::field::SpectralWindField& field, const wind::field::FieldGrid& grid,
+void make_spectral_frames(wind::field::SpectralWindField& field, const wind::field::Grid& grid,
                           const FieldFrames& frames, const UseField& use);
 
 /// The frames of the live wind over the ground, as the daemon with this configuration would have estimated it while the
@@ -34,7 +34,7 @@ void make_spectral_frames(wind::field::SpectralWindField& field, const wind::fie
 /// cannot be read, or ends before the last frame.
 Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording,
                                            const drivers::windlog::PlaybackOptions& playback,
-                                           const settings::Config& config, const wind::field::FieldGrid& grid,
+                                           const settings::Config& config, const wind::field::Grid& grid,
                                            const FieldFrames& frames, const UseField& use);
 
 }  // namespace yuragi::daemon::tools::offline

@@ -38,7 +38,7 @@ class Ticks {
   double now_s() const { return static_cast<double>(result_.ticks) / rate_hz_; }
   bool is_leading_in() const { return led_ < lead_ticks_; }
 
-  void add(const wind::WindReading& reading) {
+  void add(const wind::Reading& reading) {
     if (is_leading_in()) return;
     ++result_.readings;
     result_.reading_mean_m_s += reading.speed_m_s;
@@ -57,7 +57,7 @@ class Ticks {
     if (use_) {
       use_({.log_time_s = time_s, .recorded = recorded, .left_s = left_s, .wind = wind.state, .animation = animation_});
     }
-    if (wind.state.source == wind::WindSource::kLive) {
+    if (wind.state.source == wind::Source::kLive) {
       const double speed_m_s = speed_of(wind.state.wind);
       ++result_.live_ticks;
       result_.wind_mean_m_s += speed_m_s;
@@ -115,9 +115,9 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
                                                    const std::filesystem::path& recording,
                                                    const drivers::windlog::PlayerOptions& options, double duration_s,
                                                    const std::function<void(double)>& progress, const UseTick& use) {
-  auto opened = drivers::windlog::WindlogPlayer::open(recording, options, Instant{});
+  auto opened = drivers::windlog::Player::open(recording, options, Instant{});
   if (!opened) return opened.error();
-  drivers::windlog::WindlogPlayer& player = *opened;
+  drivers::windlog::Player& player = *opened;
   const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
   animation::Animation animation(config, gusts);
   settings::Config one_source = config;
@@ -135,7 +135,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   while (ticks.is_leading_in() || (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {
     // Readings that are due by this tick, at their own time.
     const Instant now{MonoTime(ticks.clock()), UtcTime(ticks.clock())};
-    const auto played = player.play(now, [&](const wind::WindReading& reading) {
+    const auto played = player.play(now, [&](const wind::Reading& reading) {
       // As in the daemon: readings that are not believed are left out.
       if (jury.hear(0, reading) != sensing::SensorJury::Verdict::kBelieved) return;
       if (estimator.accept(0, reading)) ticks.add(reading);
@@ -161,7 +161,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
   const Nanoseconds lead = from_seconds(lead_s);
   sensing::HeldClock clock;
   sensing::SensorHub hub(
-      config, clock, gusts, [&ticks](std::size_t, const wind::WindReading& reading) { ticks.add(reading); },
+      config, clock, gusts, [&ticks](std::size_t, const wind::Reading& reading) { ticks.add(reading); },
       animation.reach_m(), sensing::SensorThread::kOfCaller);
   const std::vector<sensing::NamedPlayer> players = hub.players();
   for (const sensing::NamedPlayer& named : players) named.player->begin_early(lead_s);

@@ -32,7 +32,7 @@ struct ReplayTick {
   double log_time_s = 0.0;  ///< since the replay began
   UtcTime recorded{};       ///< what the recording's clock showed
   double left_s = 0.0;      ///< log time until the recording's last reading; of a loop, of this round
-  const wind::WindState& wind;
+  const wind::State& wind;
   animation::Animation& animation;
 };
 

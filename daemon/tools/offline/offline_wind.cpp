@@ -10,31 +10,31 @@ namespace {
 /// is simulated.
 class PlayedReadings {
  public:
-  PlayedReadings(drivers::windlog::WindlogPlayback& playback, const OfflineWindOptions& options)
+  PlayedReadings(drivers::windlog::Playback& playback, const WindOptions& options)
       : playback_(playback), options_(options) {}
 
   /// Nullopt at the end, or if the recording cannot be read.
-  std::optional<wind::WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
+  std::optional<wind::Reading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
 
   /// Why it cannot be read; nullopt if it can.
   const std::optional<Failure>& failure() const { return failure_; }
 
  private:
-  std::optional<wind::WindReading> next_single() {
+  std::optional<wind::Reading> next_single() {
     for (;;) {
       const auto played = playback_.next();
       if (!played) failure_ = played.error();
       if (!played || !*played) return std::nullopt;
       const double log_time_s = (*played)->log_time_s;
       if (is_in_gap(log_time_s)) continue;
-      wind::WindReading reading = (*played)->reading;
+      wind::Reading reading = (*played)->reading;
       reading.time.mono = MonoTime(from_seconds(log_time_s));
       return reading;
     }
   }
 
   /// The mean over one block of time; blocks without readings are skipped.
-  std::optional<wind::WindReading> next_mean() {
+  std::optional<wind::Reading> next_mean() {
     if (!held_) held_ = next_single();
     if (!held_) return std::nullopt;
     // In whole nanoseconds, which may be off by one after conversion from seconds: a reading on the edge of two blocks
@@ -43,7 +43,7 @@ class PlayedReadings {
     const Nanoseconds edge = ((held_->time.mono.time_since_epoch() + Nanoseconds(1)) / interval + 1) * interval;
     const MonoTime end(from_seconds(seconds(edge)));
 
-    wind::WindVector sum{};
+    wind::Vector sum{};
     double speed_sum_m_s = 0.0;
     double gust_m_s = 0.0;
     std::size_t count = 0;
@@ -56,8 +56,8 @@ class PlayedReadings {
       ++directed;
     }
     const bool has_direction = directed == count;
-    const wind::WindVector mean = (1.0 / static_cast<double>(count)) * sum;
-    wind::WindReading reading;
+    const wind::Vector mean = (1.0 / static_cast<double>(count)) * sum;
+    wind::Reading reading;
     reading.time.mono = end;
     reading.speed_m_s = has_direction ? speed_of(mean) : speed_sum_m_s / static_cast<double>(count);
     if (has_direction) reading.direction_deg = wind::direction_from_deg(mean);
@@ -67,19 +67,19 @@ class PlayedReadings {
 
   bool is_in_gap(double time_s) const {
     return std::ranges::any_of(options_.gaps,
-                               [time_s](const OfflineGap& gap) { return time_s >= gap.from_s && time_s < gap.to_s; });
+                               [time_s](const Gap& gap) { return time_s >= gap.from_s && time_s < gap.to_s; });
   }
 
-  drivers::windlog::WindlogPlayback& playback_;
-  const OfflineWindOptions& options_;
-  std::optional<wind::WindReading> held_;
+  drivers::windlog::Playback& playback_;
+  const WindOptions& options_;
+  std::optional<wind::Reading> held_;
   std::optional<Failure> failure_;
 };
 
 /// One source of the estimator.
-class OfflineSource {
+class Source {
  public:
-  OfflineSource(drivers::windlog::WindlogPlayback& playback, const OfflineWindOptions& options)
+  Source(drivers::windlog::Playback& playback, const WindOptions& options)
       : readings_(playback, options), next_(readings_.next()) {}
 
   bool has_more() const { return next_.has_value(); }
@@ -87,7 +87,7 @@ class OfflineSource {
 
   /// Passes the readings up to `now` that `jury` believes to the estimator, as source `number`.
   void feed(wind::blend::BlendedEstimator& estimator, sensing::SensorJury& jury, std::size_t number, MonoTime now,
-            OfflineWindResult& result) {
+            WindResult& result) {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
       if (jury.hear(number, *next_) != sensing::SensorJury::Verdict::kBelieved) {
         ++result.withheld;
@@ -99,28 +99,27 @@ class OfflineSource {
 
  private:
   PlayedReadings readings_;
-  std::optional<wind::WindReading> next_;
+  std::optional<wind::Reading> next_;
 };
 
 }  // namespace
 
-Result<OfflineWindResult, Failure> run_offline(std::span<drivers::windlog::WindlogPlayback> playbacks,
-                                               wind::blend::BlendedEstimator& estimator,
-                                               const OfflineWindOptions& options,
-                                               const std::function<void(double time_s, const wind::WindState&)>& use) {
-  OfflineWindResult result;
-  std::vector<OfflineSource> sources;
-  for (drivers::windlog::WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
+Result<WindResult, Failure> run_offline(std::span<drivers::windlog::Playback> playbacks,
+                                        wind::blend::BlendedEstimator& estimator, const WindOptions& options,
+                                        const std::function<void(double time_s, const wind::State&)>& use) {
+  WindResult result;
+  std::vector<Source> sources;
+  for (drivers::windlog::Playback& playback : playbacks) sources.emplace_back(playback, options);
   sensing::SensorJury jury(std::vector(sources.size(), options.rules), options.stale_intervals,
                            options.has_relative_gains);
-  const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
+  const auto has_more = [&] { return std::ranges::any_of(sources, &Source::has_more); };
   // The last tick is the first at or after the last reading.
   for (bool goes_on = has_more(); goes_on; ++result.states) {
     const double time_s = static_cast<double>(result.states) / options.rate_hz;
     const MonoTime now(from_seconds(time_s));
     for (std::size_t i = 0; i < sources.size(); ++i) sources[i].feed(estimator, jury, i, now, result);
     jury.compare(now);
-    for (const OfflineSource& source : sources) {
+    for (const Source& source : sources) {
       if (source.failure()) return *source.failure();
     }
     goes_on = has_more() && time_s + 1.0 / options.rate_hz <= options.until_s;

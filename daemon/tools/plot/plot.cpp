@@ -15,19 +15,19 @@
 namespace yuragi::daemon::tools::plot {
 namespace {
 
-std::string_view style_of(PlotStyle style) {
+std::string_view style_of(Style style) {
   switch (style) {
-    case PlotStyle::kLine:
+    case Style::kLine:
       return "lines linewidth 1.6";
-    case PlotStyle::kPoints:
+    case Style::kPoints:
       return "points pointtype 7 pointsize 0.8";
-    case PlotStyle::kSteps:
+    case Style::kSteps:
       return "steps linewidth 1.4";
-    case PlotStyle::kDots:
+    case Style::kDots:
       return "points pointtype 7 pointsize 0.25";
-    case PlotStyle::kBand:
+    case Style::kBand:
       return "filledcurves fillstyle transparent solid 0.3 noborder";
-    case PlotStyle::kBars:
+    case Style::kBars:
       return "boxes fillstyle transparent solid 0.55 noborder";
   }
   return "lines";
@@ -63,7 +63,7 @@ TimeMarks time_marks(double span_s) {
 }
 
 /// The settings before the plot command of a panel. All are set, so that none is left of the panel before.
-void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
+void add_axes(std::string& script, const Panel& panel, int width_px) {
   const auto out = std::back_inserter(script);
   fmt::format_to(out, "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n",
                  plot_text(panel.title), plot_text(panel.x_label), plot_text(panel.y_label));
@@ -97,7 +97,7 @@ void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
   }
 
   fmt::format_to(out, "unset object\n");
-  for (const PlotSpan& span : panel.spans) {
+  for (const Span& span : panel.spans) {
     fmt::format_to(out,
                    "set object rectangle from first {:.15g}, graph {:g} to first {:.15g}, graph {:g} behind fillcolor "
                    "rgb '{}' fillstyle solid 1 noborder\n",
@@ -105,19 +105,19 @@ void add_axes(std::string& script, const PlotPanel& panel, int width_px) {
   }
 }
 
-std::string script_of(const std::string& file, bool is_svg, std::span<const PlotPanel> panels, int width_px,
-                      PlotBackground background) {
+std::string script_of(const std::string& file, bool is_svg, std::span<const Panel> panels, int width_px,
+                      Background background) {
   std::string script;
   const auto out = std::back_inserter(script);
   int height_px = 0;
-  for (const PlotPanel& panel : panels) height_px += panel.height_px;
-  script += plot_output(file, is_svg, width_px, height_px, background == PlotBackground::kWhite);
+  for (const Panel& panel : panels) height_px += panel.height_px;
+  script += plot_output(file, is_svg, width_px, height_px, background == Background::kWhite);
   fmt::format_to(out, "set multiplot\n");
   fmt::format_to(out,
                  "set grid xtics ytics back linetype 1 linewidth 0.5 linecolor rgb '#cccccc'\nset key top right "
                  "noenhanced\nset tics nomirror\nset format '%g'\nset boxwidth 1 relative\n");
   int below_px = height_px;
-  for (const PlotPanel& panel : panels) {
+  for (const Panel& panel : panels) {
     below_px -= panel.height_px;
     fmt::format_to(out, "set size 1,{:.6f}\nset origin 0,{:.6f}\n", static_cast<double>(panel.height_px) / height_px,
                    static_cast<double>(below_px) / height_px);
@@ -126,8 +126,8 @@ std::string script_of(const std::string& file, bool is_svg, std::span<const Plot
     // The numbers follow the plot command, one block per curve.
     std::string commands;
     std::string data;
-    for (const PlotCurve& curve : panel.curves) {
-      const bool is_band = curve.style == PlotStyle::kBand;
+    for (const Curve& curve : panel.curves) {
+      const bool is_band = curve.style == Style::kBand;
       commands +=
           fmt::format("{}'-' using {} with {} {} {}", commands.empty() ? "plot " : ", ", is_band ? "1:2:3" : "1:2",
                       style_of(curve.style), curve.color.empty() ? "" : "linecolor rgb " + plot_text(curve.color),
@@ -151,8 +151,8 @@ std::string script_of(const std::string& file, bool is_svg, std::span<const Plot
 
 }  // namespace
 
-Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px,
-                                PlotBackground background) {
+Result<void, Failure> draw_plot(const std::string& file, std::span<const Panel> panels, int width_px,
+                                Background background) {
   return draw_script(file, [&](const std::string& unfinished, bool is_svg) {
     return script_of(unfinished, is_svg, panels, width_px, background);
   });

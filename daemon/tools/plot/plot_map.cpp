@@ -15,7 +15,7 @@ namespace {
 constexpr int kMapWidth_px = 1000;
 constexpr int kMapHeight_px = 880;
 
-std::string map_script(const std::string& file, bool is_svg, const PlotMap& map) {
+std::string map_script(const std::string& file, bool is_svg, const Map& map) {
   std::string script = plot_output(file, is_svg, kMapWidth_px, kMapHeight_px);
   const auto out = std::back_inserter(script);
   fmt::format_to(out, "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n",
@@ -51,7 +51,7 @@ std::string map_script(const std::string& file, bool is_svg, const PlotMap& map)
     }
   }
   fmt::format_to(out, "e\n");
-  for (const PlotArrow& arrow : map.arrows) {
+  for (const Arrow& arrow : map.arrows) {
     fmt::format_to(out, "{:.9g} {:.9g} {:.6g} {:.6g}\n", arrow.x, arrow.y, arrow.dx, arrow.dy);
   }
   if (!map.arrows.empty()) fmt::format_to(out, "e\n");
@@ -61,7 +61,7 @@ std::string map_script(const std::string& file, bool is_svg, const PlotMap& map)
 
 }  // namespace
 
-Result<void, Failure> draw_map(const std::string& file, const PlotMap& map) {
+Result<void, Failure> draw_map(const std::string& file, const Map& map) {
   return draw_script(file,
                      [&](const std::string& unfinished, bool is_svg) { return map_script(unfinished, is_svg, map); });
 }

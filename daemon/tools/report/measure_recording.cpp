@@ -42,8 +42,8 @@ Result<std::vector<bool>, Failure> chosen_sensors(const RecordingSurvey& survey,
 
 }  // namespace
 
-Result<RecordingNumbers, Failure> measure_recording(drivers::windlog::WindlogReader& reader,
-                                                    const ReportSettings& settings, const ReadingProgress& progress) {
+Result<RecordingNumbers, Failure> measure_recording(drivers::windlog::Reader& reader, const Settings& settings,
+                                                    const ReadingProgress& progress) {
   // First the survey, then the numbers.
   const auto survey = survey_recording(reader, settings.range, progress);
   if (!survey) return survey.error();

@@ -14,8 +14,7 @@ inline constexpr std::size_t kMaxReportedSensors = 16;
 /// Computes the numbers of a recording, which it reads twice. A recording without readings has none, and no sensors.
 /// Fails as the reader does, and if a sensor of `settings.sensors` is missing or there are more than
 /// kMaxReportedSensors. Memory does not grow with the length of the recording. Thread-safe: no. Realtime-safe: no.
-Result<RecordingNumbers, Failure> measure_recording(drivers::windlog::WindlogReader& reader,
-                                                    const ReportSettings& settings,
+Result<RecordingNumbers, Failure> measure_recording(drivers::windlog::Reader& reader, const Settings& settings,
                                                     const ReadingProgress& progress = {});
 
 }  // namespace yuragi::daemon::tools::report

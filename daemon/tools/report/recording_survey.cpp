@@ -22,7 +22,7 @@ class Surveyor {
                 .unchanged_for_s = settings::recorded_source(sensor.driver, sensor.options).unchanged_for_s},
         record_(survey_.unchanged_for_s) {}
 
-  void add(Nanoseconds log_time, wind::WindReading reading) {
+  void add(Nanoseconds log_time, wind::Reading reading) {
     if (survey_.readings == 0) run_begin_ = last_ = log_time;
     const double interval_s = seconds(log_time - last_);
     if (survey_.readings > 0 && intervals_s_.size() < kMaxIntervals) intervals_s_.push_back(interval_s);
@@ -88,7 +88,7 @@ class ClockWatch {
 
 }  // namespace
 
-Result<void, Failure> for_each_reading(drivers::windlog::WindlogReader& reader, const LogRange& range,
+Result<void, Failure> for_each_reading(drivers::windlog::Reader& reader, const LogRange& range,
                                        const std::function<void(const drivers::windlog::LoggedReading&)>& use) {
   reader.seek(range.from);
   for (;;) {
@@ -99,7 +99,7 @@ Result<void, Failure> for_each_reading(drivers::windlog::WindlogReader& reader, 
   }
 }
 
-Result<RecordingSurvey, Failure> survey_recording(drivers::windlog::WindlogReader& reader, const LogRange& range,
+Result<RecordingSurvey, Failure> survey_recording(drivers::windlog::Reader& reader, const LogRange& range,
                                                   const ReadingProgress& progress) {
   RecordingSurvey survey;
   survey.sensor_of.assign(reader.sensors().size(), RecordingSurvey::kNone);

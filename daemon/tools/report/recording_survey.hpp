@@ -41,7 +41,7 @@ struct RecordingSurvey {
   std::uint64_t clock_sets = 0;  ///< how often its clock was set by more than 2 s
   double largest_clock_set_s = 0.0;
   std::vector<SensorSurvey> sensors;   ///< by name, in the order of their first readings
-  std::vector<std::size_t> sensor_of;  ///< index into `sensors` of each WindlogReader::sensors()
+  std::vector<std::size_t> sensor_of;  ///< index into `sensors` of each windlog::Reader::sensors()
 
   static constexpr std::size_t kNone = SIZE_MAX;  ///< in `sensor_of`: without readings
 };
@@ -50,11 +50,11 @@ struct RecordingSurvey {
 using ReadingProgress = std::function<void(std::uint64_t readings)>;
 
 /// Reads `range` once. Sensors of the same name in several sessions are one sensor. Fails as the reader does.
-Result<RecordingSurvey, Failure> survey_recording(drivers::windlog::WindlogReader& reader, const LogRange& range,
+Result<RecordingSurvey, Failure> survey_recording(drivers::windlog::Reader& reader, const LogRange& range,
                                                   const ReadingProgress& progress);
 
 /// Calls `use(reading)` for each reading of a range. Fails as the reader does.
-Result<void, Failure> for_each_reading(drivers::windlog::WindlogReader& reader, const LogRange& range,
+Result<void, Failure> for_each_reading(drivers::windlog::Reader& reader, const LogRange& range,
                                        const std::function<void(const drivers::windlog::LoggedReading&)>& use);
 
 }  // namespace yuragi::daemon::tools::report

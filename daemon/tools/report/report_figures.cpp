@@ -46,7 +46,7 @@ class Figures {
 
   Result<std::string, Failure> series() {
     if (sensor_.believed == 0) return {};
-    std::vector<plot::PlotPanel> panels = {speed_panel()};
+    std::vector<plot::Panel> panels = {speed_panel()};
     if (sensor_.directed > 0) panels.push_back(direction_panel());
     panels.push_back(state_panel());
     return draw(panels, "Speed, direction and state over time", kWidth_px, event_titles(height_of(panels)));
@@ -57,15 +57,15 @@ class Figures {
   Result<std::string, Failure> diurnal();
 
  private:
-  static int height_of(std::span<const plot::PlotPanel> panels) {
+  static int height_of(std::span<const plot::Panel> panels) {
     int height_px = 0;
-    for (const plot::PlotPanel& panel : panels) height_px += panel.height_px;
+    for (const plot::Panel& panel : panels) height_px += panel.height_px;
     return height_px;
   }
 
-  Result<std::string, Failure> draw(std::span<const plot::PlotPanel> panels, std::string_view label,
+  Result<std::string, Failure> draw(std::span<const plot::Panel> panels, std::string_view label,
                                     int width_px = kWidth_px, std::string_view over = {}) {
-    const auto drawn = plot::draw_plot(scratch_, panels, width_px, plot::PlotBackground::kNone);
+    const auto drawn = plot::draw_plot(scratch_, panels, width_px, plot::Background::kNone);
     if (!drawn) return drawn.error();
     const std::string text = text_of_file(scratch_);
     std::error_code ignored;
@@ -75,10 +75,10 @@ class Figures {
 
   double axis_s(double time_s) const { return seconds(recording_.utc_at(time_s).time_since_epoch()); }
 
-  plot::PlotPanel time_panel() const {
+  plot::Panel time_panel() const {
     // One reading has no duration, and gnuplot cannot draw an axis of microseconds at times since 1970.
     const double margin_s = recording_.duration_s() < 1.0 ? 1.0 : 0.0;
-    plot::PlotPanel panel;
+    plot::Panel panel;
     panel.is_x_time = true;
     panel.x_range = {{axis_s(recording_.begin_s) - margin_s, axis_s(recording_.end_s) + margin_s}};
     // Silences are drawn behind the curves.
@@ -104,9 +104,9 @@ class Figures {
   }
 
   std::string event_titles(int height_px) const;
-  plot::PlotPanel speed_panel() const;
-  plot::PlotPanel direction_panel() const;
-  plot::PlotPanel state_panel() const;
+  plot::Panel speed_panel() const;
+  plot::Panel direction_panel() const;
+  plot::Panel state_panel() const;
 
   const RecordingNumbers& recording_;
   const SensorNumbers& sensor_;
@@ -133,18 +133,17 @@ std::string Figures::event_titles(int height_px) const {
   return titles;
 }
 
-plot::PlotPanel Figures::speed_panel() const {
-  plot::PlotCurve band{
-      .title = "lowest to highest", .style = plot::PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
-  plot::PlotCurve mean{.title = "speed", .style = plot::PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
-  plot::PlotCurve gust{.title = sensor_.reported_gust_m_s ? "gust reported by the sensor" : "3 s gust",
-                       .style = plot::PlotStyle::kLine,
-                       .x = {},
-                       .y = {},
-                       .color = kGustColor};
+plot::Panel Figures::speed_panel() const {
+  plot::Curve band{.title = "lowest to highest", .style = plot::Style::kBand, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve mean{.title = "speed", .style = plot::Style::kLine, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve gust{.title = sensor_.reported_gust_m_s ? "gust reported by the sensor" : "3 s gust",
+                   .style = plot::Style::kLine,
+                   .x = {},
+                   .y = {},
+                   .color = kGustColor};
   double highest_m_s = 1.0;
   bool has_band = false;
-  const auto add = [](plot::PlotCurve& curve, double x, double y, double y2) {
+  const auto add = [](plot::Curve& curve, double x, double y, double y2) {
     curve.x.push_back(x);
     curve.y.push_back(y);
     curve.y2.push_back(y2);
@@ -153,7 +152,7 @@ plot::PlotPanel Figures::speed_panel() const {
     if (bin.count == 0) continue;
     const double x = axis_s(bin.time_s());
     if (bin.follows_silence) {
-      for (plot::PlotCurve* curve : {&band, &mean, &gust}) add(*curve, kNothing, kNothing, kNothing);
+      for (plot::Curve* curve : {&band, &mean, &gust}) add(*curve, kNothing, kNothing, kNothing);
     }
     add(band, x, bin.min_m_s, bin.max_m_s);
     add(mean, x, bin.mean_m_s(), 0.0);
@@ -162,9 +161,9 @@ plot::PlotPanel Figures::speed_panel() const {
     highest_m_s = std::max({highest_m_s, bin.max_m_s, bin.gust_m_s.value_or(0.0)});
   }
   // A line through few readings would be invisible.
-  if (mean.x.size() < kFewReadings) mean.style = plot::PlotStyle::kPoints;
+  if (mean.x.size() < kFewReadings) mean.style = plot::Style::kPoints;
 
-  plot::PlotPanel panel = time_panel();
+  plot::Panel panel = time_panel();
   panel.y_label = "speed, m/s";
   panel.y_range = {{0.0, 1.3 * highest_m_s}};
   panel.height_px = 360;
@@ -177,35 +176,35 @@ plot::PlotPanel Figures::speed_panel() const {
   return panel;
 }
 
-plot::PlotPanel Figures::direction_panel() const {
-  plot::PlotCurve readings{.title = {}, .style = plot::PlotStyle::kDots, .x = {}, .y = {}, .color = kPaleColor};
+plot::Panel Figures::direction_panel() const {
+  plot::Curve readings{.title = {}, .style = plot::Style::kDots, .x = {}, .y = {}, .color = kPaleColor};
   for (const DirectionPoint& point : sensor_.directions) {
     readings.x.push_back(axis_s(point.time_s));
     readings.y.push_back(point.direction_deg);
   }
   // Points, not lines: a wind passing through north would draw a line across the panel.
-  plot::PlotCurve mean{.title = {}, .style = plot::PlotStyle::kDots, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve mean{.title = {}, .style = plot::Style::kDots, .x = {}, .y = {}, .color = kWindColor};
   for (const TimeBin& bin : sensor_.bins) {
-    const wind::WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
+    const wind::Vector sum{bin.u_sum_m_s, bin.v_sum_m_s};
     if (bin.directed == 0 || speed_of(sum) == 0.0) continue;
     mean.x.push_back(axis_s(bin.time_s()));
     mean.y.push_back(wind::direction_from_deg(sum));
   }
-  if (readings.x.size() < kFewReadings) mean.style = plot::PlotStyle::kPoints;
+  if (readings.x.size() < kFewReadings) mean.style = plot::Style::kPoints;
 
-  plot::PlotPanel panel = time_panel();
+  plot::Panel panel = time_panel();
   panel.y_label = "from, degrees";
   panel.y_range = {{0.0, 360.0}};
   panel.y_step = 90.0;
   panel.height_px = 260;
-  for (plot::PlotCurve* curve : {&readings, &mean}) {
+  for (plot::Curve* curve : {&readings, &mean}) {
     if (!curve->x.empty()) panel.curves.push_back(std::move(*curve));
   }
   return panel;
 }
 
-plot::PlotPanel Figures::state_panel() const {
-  plot::PlotPanel panel = time_panel();
+plot::Panel Figures::state_panel() const {
+  plot::Panel panel = time_panel();
   panel.spans = {{.from = panel.x_range->first,
                   .to = panel.x_range->second,
                   .color = std::string(kRecordedStateColors[static_cast<std::size_t>(RecordedState::kLive)])}};
@@ -226,22 +225,21 @@ plot::PlotPanel Figures::state_panel() const {
 Result<std::string, Failure> Figures::distribution() {
   const SpeedDistribution& numbers = sensor_.distribution;
   if (numbers.share.empty()) return {};
-  plot::PlotCurve measured{.title = "readings", .style = plot::PlotStyle::kBars, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve measured{.title = "readings", .style = plot::Style::kBars, .x = {}, .y = {}, .color = kWindColor};
   for (std::size_t i = 0; i < numbers.share.size(); ++i) {
     measured.x.push_back((static_cast<double>(i) + 0.5) * numbers.class_m_s);
     measured.y.push_back(100.0 * numbers.share[i]);
   }
   const double end_m_s = numbers.class_m_s * static_cast<double>(numbers.share.size() + 1);
-  plot::PlotPanel panel{
-      .title = {}, .x_label = "speed, m/s", .y_label = "share of the readings, %", .curves = {measured}};
+  plot::Panel panel{.title = {}, .x_label = "speed, m/s", .y_label = "share of the readings, %", .curves = {measured}};
   if (numbers.weibull_shape) {
     const double k = *numbers.weibull_shape;
     const double c = *numbers.weibull_scale_m_s;
-    plot::PlotCurve fit{.title = fmt::format("Weibull, k = {:.2f}, c = {:.2f} m/s", k, c),
-                        .style = plot::PlotStyle::kLine,
-                        .x = {},
-                        .y = {},
-                        .color = kFitColor};
+    plot::Curve fit{.title = fmt::format("Weibull, k = {:.2f}, c = {:.2f} m/s", k, c),
+                    .style = plot::Style::kLine,
+                    .x = {},
+                    .y = {},
+                    .color = kFitColor};
     constexpr int kPoints = 200;
     for (int i = 1; i <= kPoints; ++i) {
       const double speed_m_s = end_m_s * i / kPoints;
@@ -262,7 +260,7 @@ Result<std::string, Failure> Figures::spectrum() {
   const SpectrumNumbers& numbers = *sensor_.spectrum;
 
   // Means over eighths of an octave: the same density of points at all frequencies.
-  plot::PlotCurve measured{.title = "measured", .style = plot::PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve measured{.title = "measured", .style = plot::Style::kLine, .x = {}, .y = {}, .color = kWindColor};
   constexpr double kPerOctave = 8.0;
   // Without the line at the Nyquist frequency, which has half of the power.
   const std::size_t lines = numbers.density_m2_s2_hz.size() - 1;
@@ -285,21 +283,20 @@ Result<std::string, Failure> Figures::spectrum() {
   const double from_hz = measured.x.front();
   const double to_hz = measured.x.back();
 
-  plot::PlotPanel panel{.title = {},
-                        .x_label = "frequency, Hz",
-                        .y_label = "S, m²/s²/Hz",
-                        .is_x_log = true,
-                        .is_y_log = true,
-                        .curves = {measured}};
+  plot::Panel panel{.title = {},
+                    .x_label = "frequency, Hz",
+                    .y_label = "S, m²/s²/Hz",
+                    .is_x_log = true,
+                    .is_y_log = true,
+                    .curves = {measured}};
   if (numbers.von_karman) {
     const VonKarmanFit& fit = *numbers.von_karman;
-    plot::PlotCurve curve{
-        .title = fmt::format("von Karman, U = {:.2f} m/s, TI = {:.2f}{}", fit.speed_m_s, fit.intensity,
-                             fit.length_m ? fmt::format(", L = {:.0f} m", *fit.length_m) : ""),
-        .style = plot::PlotStyle::kLine,
-        .x = {},
-        .y = {},
-        .color = kFitColor};
+    plot::Curve curve{.title = fmt::format("von Karman, U = {:.2f} m/s, TI = {:.2f}{}", fit.speed_m_s, fit.intensity,
+                                           fit.length_m ? fmt::format(", L = {:.0f} m", *fit.length_m) : ""),
+                      .style = plot::Style::kLine,
+                      .x = {},
+                      .y = {},
+                      .color = kFitColor};
     constexpr int kPoints = 200;
     for (int i = 0; i <= kPoints; ++i) {
       const double f = from_hz * std::pow(to_hz / from_hz, static_cast<double>(i) / kPoints);
@@ -312,11 +309,11 @@ Result<std::string, Failure> Figures::spectrum() {
   if (numbers.power_law) {
     // Drawn above the measured curve, so that both can be seen.
     const PowerLawFit& fit = *numbers.power_law;
-    plot::PlotCurve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
-                          .style = plot::PlotStyle::kLine,
-                          .x = {},
-                          .y = {},
-                          .color = kSlopeColor};
+    plot::Curve curve{.title = fmt::format("f to the power of {:.2f}, drawn twice as high", -fit.beta),
+                      .style = plot::Style::kLine,
+                      .x = {},
+                      .y = {},
+                      .color = kSlopeColor};
     for (const double f : {fit.from_hz, fit.to_hz}) {
       curve.x.push_back(f);
       curve.y.push_back(2.0 * std::exp(fit.log_level - fit.beta * std::log(f)));
@@ -331,9 +328,8 @@ Result<std::string, Failure> Figures::spectrum() {
 
 Result<std::string, Failure> Figures::diurnal() {
   if (!sensor_.diurnal) return {};
-  plot::PlotCurve band{
-      .title = "8 of 10 readings", .style = plot::PlotStyle::kBand, .x = {}, .y = {}, .color = kWindColor};
-  plot::PlotCurve mean{.title = "mean", .style = plot::PlotStyle::kLine, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve band{.title = "8 of 10 readings", .style = plot::Style::kBand, .x = {}, .y = {}, .color = kWindColor};
+  plot::Curve mean{.title = "mean", .style = plot::Style::kLine, .x = {}, .y = {}, .color = kWindColor};
   double highest_m_s = 1.0;
   for (std::size_t i = 0; i < sensor_.diurnal->size(); ++i) {
     const HourOfDay& hour = (*sensor_.diurnal)[i];
@@ -346,7 +342,7 @@ Result<std::string, Failure> Figures::diurnal() {
     mean.y.push_back(has_any ? hour.mean_m_s : kNothing);
     highest_m_s = std::max({highest_m_s, hour.p90_m_s, hour.mean_m_s});
   }
-  plot::PlotPanel panel{
+  plot::Panel panel{
       .title = {}, .x_label = "hour of the day, local time", .y_label = "speed, m/s", .curves = {band, mean}};
   panel.x_range = {{0.0, 24.0}};
   panel.x_step = 3.0;

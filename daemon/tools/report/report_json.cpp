@@ -105,7 +105,7 @@ ordered_json json_of_series(const RecordingNumbers& recording, const SensorNumbe
   ordered_json rows = ordered_json::array();
   for (const TimeBin& bin : sensor.bins) {
     if (bin.count == 0) continue;
-    const wind::WindVector sum{bin.u_sum_m_s, bin.v_sum_m_s};
+    const wind::Vector sum{bin.u_sum_m_s, bin.v_sum_m_s};
     std::optional<double> direction_deg;
     if (bin.directed > 0 && speed_of(sum) > 0.0) direction_deg = wind::direction_from_deg(sum);
     rows.push_back({{"time_s", bin.time_s()},

@@ -41,13 +41,13 @@ RecordedState state_of(wind::judging::ReadingFault fault) {
   return RecordedState::kLive;
 }
 
-wind::turbulence::TurbulencePrior prior_of(const ReportSettings& settings, const std::string& sensor) {
-  return settings.prior ? settings.prior(sensor) : wind::turbulence::TurbulencePrior{};
+wind::turbulence::Prior prior_of(const Settings& settings, const std::string& sensor) {
+  return settings.prior ? settings.prior(sensor) : wind::turbulence::Prior{};
 }
 
 }  // namespace
 
-SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const ReportSettings& settings)
+SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const Settings& settings)
     : settings_(settings),
       begin_s_(begin_s),
       end_s_(end_s),
@@ -120,9 +120,9 @@ void SensorTally::mark(RecordedState state, double from_s, double to_s) {
   }
 }
 
-void SensorTally::add(Nanoseconds log_time, const wind::WindReading& reading) {
+void SensorTally::add(Nanoseconds log_time, const wind::Reading& reading) {
   const double time_s = seconds(log_time);
-  wind::WindReading played = reading;
+  wind::Reading played = reading;
   played.time.mono = MonoTime(log_time);
 
   // The state since the last reading. After a single reading the record has no interval yet.
@@ -149,7 +149,7 @@ void SensorTally::add(Nanoseconds log_time, const wind::WindReading& reading) {
   if (is_believed) add_believed(log_time, played);
 }
 
-void SensorTally::add_believed(Nanoseconds log_time, const wind::WindReading& reading) {
+void SensorTally::add_believed(Nanoseconds log_time, const wind::Reading& reading) {
   const double time_s = seconds(log_time);
   const double speed_m_s = reading.speed_m_s;
   if (numbers_.believed++ == 0) numbers_.min_m_s = numbers_.max_m_s = speed_m_s;
@@ -201,7 +201,7 @@ void SensorTally::add_believed(Nanoseconds log_time, const wind::WindReading& re
       });
 }
 
-void SensorTally::add_to_bin(double time_s, const wind::WindReading& reading, const std::optional<double>& gust_m_s) {
+void SensorTally::add_to_bin(double time_s, const wind::Reading& reading, const std::optional<double>& gust_m_s) {
   TimeBin& bin = numbers_.bins[bin_of(time_s)];
   if (bin.count++ == 0) {
     bin.min_m_s = bin.max_m_s = reading.speed_m_s;
@@ -214,7 +214,7 @@ void SensorTally::add_to_bin(double time_s, const wind::WindReading& reading, co
   bin.max_m_s = std::max(bin.max_m_s, reading.speed_m_s);
   if (gust_m_s) bin.gust_m_s = std::max(bin.gust_m_s.value_or(0.0), *gust_m_s);
   if (!reading.direction_deg) return;
-  const wind::WindVector wind = wind::wind_from(reading.speed_m_s, *reading.direction_deg);
+  const wind::Vector wind = wind::wind_from(reading.speed_m_s, *reading.direction_deg);
   ++bin.directed;
   bin.u_sum_m_s += wind.u_m_s;
   bin.v_sum_m_s += wind.v_m_s;

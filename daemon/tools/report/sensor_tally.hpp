@@ -18,13 +18,13 @@
 namespace yuragi::daemon::tools::report {
 
 /// How a recording is judged, and the zone of its local time.
-struct ReportSettings {
+struct Settings {
   LogRange range;
   std::vector<std::string> sensors;  ///< by name; none: all
   double stale_intervals = 5.0;      ///< [wind] stale_intervals
   wind::judging::JudgeSettings judge;
-  /// The prior of the gusts for a sensor of this name; none: TurbulencePrior's default.
-  std::function<wind::turbulence::TurbulencePrior(const std::string& sensor)> prior;
+  /// The prior of the gusts for a sensor of this name; none: turbulence::Prior's default.
+  std::function<wind::turbulence::Prior(const std::string& sensor)> prior;
   /// Local time minus UTC at a moment; none: UTC.
   std::function<Nanoseconds(UtcTime)> utc_offset;
 };
@@ -33,10 +33,10 @@ struct ReportSettings {
 class SensorTally {
  public:
   /// `begin_s` and `end_s`: of the whole recording, log time. `settings` must outlive the tally.
-  SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const ReportSettings& settings);
+  SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const Settings& settings);
 
   /// Takes the sensor's next reading, in the order of log time.
-  void add(Nanoseconds log_time, const wind::WindReading& reading);
+  void add(Nanoseconds log_time, const wind::Reading& reading);
 
   /// The numbers; call it once, after the last reading.
   SensorNumbers finish();
@@ -44,12 +44,12 @@ class SensorTally {
  private:
   void plan_spectrum(const SensorSurvey& survey);
   void mark(RecordedState state, double from_s, double to_s);
-  void add_believed(Nanoseconds log_time, const wind::WindReading& reading);
-  void add_to_bin(double time_s, const wind::WindReading& reading, const std::optional<double>& gust_m_s);
+  void add_believed(Nanoseconds log_time, const wind::Reading& reading);
+  void add_to_bin(double time_s, const wind::Reading& reading, const std::optional<double>& gust_m_s);
   std::size_t bin_of(double time_s) const;
   std::size_t hour_of(UtcTime moment);
 
-  const ReportSettings& settings_;
+  const Settings& settings_;
   double begin_s_;
   double end_s_;
   bool has_gusts_;
@@ -67,7 +67,7 @@ class SensorTally {
   RoseTally rose_;
   ThreeSecondMean three_seconds_;
   TenMinuteBlocks blocks_;
-  wind::WindVector wind_sum_;
+  wind::Vector wind_sum_;
   double directed_speed_sum_m_s_ = 0.0;
   double next_direction_s_ = 0.0;
   std::optional<double> held_direction_deg_;

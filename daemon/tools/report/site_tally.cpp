@@ -3,25 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/source_estimator.hpp"
 
 namespace yuragi::daemon::tools::report {
 namespace {
 
 constexpr double kGapOfIntervals = 3.0;
-/// As in BlendSource: memories of the mean speed by which differences are divided, and of the mean direction.
+/// As in blend::SourceEstimator: memories of the mean speed by which differences are divided, and of the mean
+/// direction.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kDirectionMemory_s = 100.0;
 
 }  // namespace
 
-SiteTally::SiteTally(const wind::turbulence::TurbulencePrior& prior, double interval_s)
+SiteTally::SiteTally(const wind::turbulence::Prior& prior, double interval_s)
     : interval_s_(interval_s),
       length_m_(prior.length_m),
-      quick_(prior, wind::blend::BlendSettings{}.fit_memory_s),
-      site_fit_(prior, wind::blend::BlendSettings{}.fit_memory_s) {}
+      quick_(prior, wind::blend::Settings{}.fit_memory_s),
+      site_fit_(prior, wind::blend::Settings{}.fit_memory_s) {}
 
-void SiteTally::add(double time_s, double speed_m_s, const std::optional<wind::WindVector>& wind) {
+void SiteTally::add(double time_s, double speed_m_s, const std::optional<wind::Vector>& wind) {
   if (!(interval_s_ > 0.0) || interval_s_ > wind::turbulence::SiteSpectrum::kQuick_s) return;
   if (last_s_ && time_s - *last_s_ > kGapOfIntervals * interval_s_) {
     quick_.break_off();
@@ -30,14 +31,14 @@ void SiteTally::add(double time_s, double speed_m_s, const std::optional<wind::W
   last_s_ = time_s;
   measured_s_ += interval_s_;
   // A wind without a direction has the speed alone.
-  const wind::WindVector measured = wind.value_or(wind::WindVector{0.0, speed_m_s});
+  const wind::Vector measured = wind.value_or(wind::Vector{0.0, speed_m_s});
   const auto part = [this](double memory_s) { return -std::expm1(-interval_s_ / std::min(memory_s, measured_s_)); };
   const bool is_first = measured_s_ == interval_s_;
   mean_ = mean_ + (is_first ? 1.0 : part(kDirectionMemory_s)) * (measured - mean_);
   speed_m_s_ += (is_first ? 1.0 : part(kSpeedMemory_s)) * (speed_m_s - speed_m_s_);
 
   const double mean_m_s = speed_of(mean_);
-  const wind::WindVector ahead = mean_m_s > 0.0 ? (1.0 / mean_m_s) * mean_ : wind::WindVector{0.0, 1.0};
+  const wind::Vector ahead = mean_m_s > 0.0 ? (1.0 / mean_m_s) * mean_ : wind::Vector{0.0, 1.0};
   const double divisor_m_s = std::max(speed_m_s_, wind::blend::kMinSpeed_m_s);
   quick_.forget(interval_s_);
   quick_.take(measured, ahead, divisor_m_s, wind.has_value());

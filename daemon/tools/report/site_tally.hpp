@@ -11,10 +11,10 @@ namespace yuragi::daemon::tools::report {
 class SiteTally {
  public:
   /// `prior`: of the slow source that is to be corrected. `interval_s`: the sensor's.
-  SiteTally(const wind::turbulence::TurbulencePrior& prior, double interval_s);
+  SiteTally(const wind::turbulence::Prior& prior, double interval_s);
 
   /// The next believed reading; `wind`: with the last known direction; empty if there is none yet.
-  void add(double time_s, double speed_m_s, const std::optional<wind::WindVector>& wind);
+  void add(double time_s, double speed_m_s, const std::optional<wind::Vector>& wind);
 
   /// Nullopt if the sensor is too slow, or was never live for long enough.
   std::optional<SiteNumbers> numbers() const;
@@ -27,7 +27,7 @@ class SiteTally {
   wind::turbulence::SiteSpectrum site_;
   std::optional<double> last_s_;
   double measured_s_ = 0.0;
-  wind::WindVector mean_{};
+  wind::Vector mean_{};
   double speed_m_s_ = 0.0;
 };
 

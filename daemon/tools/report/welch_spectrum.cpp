@@ -45,10 +45,10 @@ void WelchSpectrum::add(const EvenSample& sample) {
 
 void WelchSpectrum::take_segment() {
   const std::span<double> values = fft_.samples();
-  wind::WindVector mean{};
+  wind::Vector mean{};
   double mean_speed_m_s = 0.0;
   for (const EvenSample& sample : samples_) {
-    mean = mean + sample.wind.value_or(wind::WindVector{});
+    mean = mean + sample.wind.value_or(wind::Vector{});
     mean_speed_m_s += sample.speed_m_s;
   }
   const auto count = static_cast<double>(samples_.size());
@@ -57,7 +57,7 @@ void WelchSpectrum::take_segment() {
   // Along the segment's own mean wind; without directions, of the speed.
   const double length = speed_of(mean);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const wind::WindVector wind = samples_[i].wind.value_or(wind::WindVector{});
+    const wind::Vector wind = samples_[i].wind.value_or(wind::Vector{});
     values[i] = is_of_speed_ || length == 0.0 ? samples_[i].speed_m_s
                                               : (wind.u_m_s * mean.u_m_s + wind.v_m_s * mean.v_m_s) / length;
   }

@@ -13,7 +13,7 @@ namespace yuragi::daemon::tools::report {
 /// A sample of an evenly spaced series.
 struct EvenSample {
   double speed_m_s = 0.0;
-  std::optional<wind::WindVector> wind;  ///< nullopt: its direction is not known
+  std::optional<wind::Vector> wind;  ///< nullopt: its direction is not known
 };
 
 /// Estimates a spectrum (SpectrumNumbers describes how) from a series of any length, segment by segment, in bounded

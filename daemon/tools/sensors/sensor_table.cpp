@@ -22,11 +22,11 @@ bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
 
 std::string_view wind_source(const wire::Sensors& sensors) {
   switch (sensors.wind.source) {
-    case wind::WindSource::kDefault:
+    case wind::Source::kDefault:
       return "default wind: no sensor is live";
-    case wind::WindSource::kHandover:
+    case wind::Source::kHandover:
       return "handing over";
-    case wind::WindSource::kLive:
+    case wind::Source::kLive:
       return is_replayed(sensors.sensors) ? "REPLAY of a recording" : "live";
   }
   return "?";
@@ -55,7 +55,7 @@ std::string short_number(double value) {
 }
 
 /// The place of the wind on top of the table, and when its gusts reach the middle of the scenes; empty if that is 0.
-std::string place_of_wind(const wind::WindState& wind) {
+std::string place_of_wind(const wind::State& wind) {
   if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
   std::string text = wind.is_place_configured ? "at the sensors, " : "at the windward edge, ";
   if (std::abs(wind.upwind_m) < 0.05) {
@@ -137,7 +137,7 @@ std::string wrapped(std::string_view text) {
 }  // namespace
 
 std::string sensor_table(const wire::Sensors& sensors) {
-  const wind::WindVector wind = sensors.wind.wind;
+  const wind::Vector wind = sensors.wind.wind;
   std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   ticks skipped {}\n", speed_of(wind),
                                   direction_text(wind::direction_from_deg(wind)), wind_source(sensors), sensors.clients,
                                   sensors.recent_skipped_ticks);

@@ -40,7 +40,7 @@ std::string files_text(const std::filesystem::path& recording) {
 }
 
 /// "roof (modbus): 1000 readings", for each sensor by its name.
-std::string counts_text(drivers::windlog::WindlogReader& reader, Nanoseconds patience) {
+std::string counts_text(drivers::windlog::Reader& reader, Nanoseconds patience) {
   std::map<std::string, std::size_t> counts;
   for (const drivers::windlog::LoggedSensor& sensor : reader.sensors())
     counts.emplace(fmt::format("{} ({})", sensor.name, sensor.driver), 0);
@@ -68,7 +68,7 @@ std::string counts_text(drivers::windlog::WindlogReader& reader, Nanoseconds pat
 
 std::string recording_head(const std::filesystem::path& recording, Nanoseconds patience) {
   std::string text = files_text(recording);
-  auto reader = drivers::windlog::WindlogReader::open(recording);
+  auto reader = drivers::windlog::Reader::open(recording);
   if (!reader) return text + reader.error().message + "\n";
   for (const drivers::windlog::LoggedSession& session : reader->sessions()) {
     text += fmt::format("session {}: {} to {}, {}\n", session.id, text_of(session.first.utc), text_of(session.last.utc),
@@ -78,7 +78,7 @@ std::string recording_head(const std::filesystem::path& recording, Nanoseconds p
 }
 
 std::string last_hour(const std::filesystem::path& recording) {
-  auto reader = drivers::windlog::WindlogReader::open(recording);
+  auto reader = drivers::windlog::Reader::open(recording);
   if (!reader) return reader.error().message + "\n";
   char* bytes = nullptr;
   std::size_t size = 0;

@@ -56,11 +56,11 @@ class MeshBuilder {
   void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     mesh_.indices.insert(mesh_.indices.end(), {a, b, c, a, c, d});
   }
-  TakeMesh take() { return std::move(mesh_); }
+  Mesh take() { return std::move(mesh_); }
 
  private:
   pose::Kinematics kinematics_;
-  TakeMesh mesh_;
+  Mesh mesh_;
 };
 
 /// A place along a strand at rest.
@@ -257,7 +257,7 @@ std::size_t joints_of(const pose::TreeSkeleton& tree, std::size_t every) {
 
 }  // namespace
 
-TakeMesh take_mesh_of(const pose::Skeleton& skeleton, std::size_t every) {
+Mesh take_mesh_of(const pose::Skeleton& skeleton, std::size_t every) {
   MeshBuilder builder(skeleton);
   std::visit([&](const auto& kind) { add(builder, kind, std::max<std::size_t>(every, 1)); }, skeleton);
   return builder.take();

@@ -83,12 +83,12 @@ class GltfBuffer {
 constexpr int kFloat = TINYGLTF_COMPONENT_TYPE_FLOAT;
 constexpr int kVec3 = TINYGLTF_TYPE_VEC3;
 
-void add_mesh(tinygltf::Model& model, GltfBuffer& buffer, const TakeMesh& mesh, const std::string& name) {
+void add_mesh(tinygltf::Model& model, GltfBuffer& buffer, const Mesh& mesh, const std::string& name) {
   std::vector<std::array<float, 3>> places;
   std::vector<std::array<std::uint16_t, 4>> joints;
   std::vector<std::array<float, 4>> weights(mesh.vertices.size(), {1.0F, 0.0F, 0.0F, 0.0F});
   std::vector<double> least(3, 0.0), most(3, 0.0);
-  for (const TakeVertex& vertex : mesh.vertices) {
+  for (const Vertex& vertex : mesh.vertices) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto value = static_cast<double>(vertex.place_m.at(axis));
       least[axis] = places.empty() ? value : std::min(least[axis], value);
@@ -124,7 +124,7 @@ void add_mesh(tinygltf::Model& model, GltfBuffer& buffer, const TakeMesh& mesh, 
 }
 
 /// A node for each joint, below one of their own, and the skin; the nodes stand as in the first picture.
-void add_skeleton(tinygltf::Model& model, GltfBuffer& buffer, const TakeMesh& mesh, const Pictures& pictures,
+void add_skeleton(tinygltf::Model& model, GltfBuffer& buffer, const Mesh& mesh, const Pictures& pictures,
                   const std::string& name) {
   const std::size_t count = mesh.joints.size();
   std::vector<std::array<float, 16>> inverse_binds;
@@ -208,12 +208,12 @@ Result<void, Failure> checked_size(std::size_t joints, double pictures) {
                  FailureKind::kUsage};
 }
 
-TakeRecorder::TakeRecorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps)
+Recorder::Recorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps)
     : name_(std::move(name)), fps_(fps), mesh_(take_mesh_of(skeleton, every)), kinematics_(skeleton) {}
 
-bool TakeRecorder::add(const pose::Pose& pose) {
+bool Recorder::add(const pose::Pose& pose) {
   if (!kinematics_.run(pose)) return false;
-  for (const TakeJoint& joint : mesh_.joints) {
+  for (const Joint& joint : mesh_.joints) {
     const pose::JointPosition at = joint.number ? kinematics_.joint(*joint.number) : pose::JointPosition{};
     places_m_.insert(places_m_.end(), {at.x_m, at.y_m, at.z_m});
   }
@@ -221,7 +221,7 @@ bool TakeRecorder::add(const pose::Pose& pose) {
   return true;
 }
 
-Result<void, Failure> TakeRecorder::write_glb(std::ostream& out) const {
+Result<void, Failure> Recorder::write_glb(std::ostream& out) const {
   if (frames_ == 0) return Failure{"the take has no picture: the recording ends before it begins"};
   const Pictures pictures{.places_m = places_m_, .joints = mesh_.joints.size(), .frames = frames_};
   tinygltf::Model model;

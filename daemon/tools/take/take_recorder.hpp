@@ -25,10 +25,10 @@ Result<void, Failure> checked_size(std::size_t joints, double pictures);
 /// One scene's motion as a file for 3D programs: glTF 2.0 in its binary form (Khronos Group, ISO/IEC 12113:2022), a
 /// skinned mesh in which each joint is a node with its place over time. Metres, y up, as here; x east, z south. What
 /// does not move has no curve. Neither normals nor colours: a person who opens it gives it a material.
-class TakeRecorder {
+class Recorder {
  public:
   /// `skeleton` must outlive this, and have at most kMaxJoints with that `every` (every_within()).
-  TakeRecorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps);
+  Recorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps);
 
   /// The next picture. False if the pose does not fit the skeleton.
   bool add(const pose::Pose& pose);
@@ -42,7 +42,7 @@ class TakeRecorder {
  private:
   std::string name_;
   double fps_;
-  TakeMesh mesh_;
+  Mesh mesh_;
   pose::Kinematics kinematics_;
   std::vector<float> places_m_;  ///< x, y, z of each joint, picture after picture
   std::size_t frames_ = 0;

@@ -4,7 +4,7 @@ namespace yuragi::drivers::decode::modbus {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
-using DecodeResult = Result<ModbusRegisters, ModbusRefusal>;
+using DecodeResult = Result<Registers, RefusedReply>;
 
 constexpr std::size_t kTcpHeader = 7;      // transaction id, protocol id, length, unit id
 constexpr std::size_t kTcpLengthFrom = 6;  // the length field counts from here
@@ -22,12 +22,12 @@ std::uint16_t big_endian(Bytes bytes, std::size_t at) {
   return static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]);
 }
 
-ModbusRefusal refuse(Refusal why, std::uint8_t exception = 0) {
+RefusedReply refuse(Refusal why, std::uint8_t exception = 0) {
   return {why, exception};
 }
 
 /// What both framings carry: function, byte count, registers; or function with the high bit, exception code.
-DecodeResult decode_pdu(const ModbusRequest& request, Bytes pdu) {
+DecodeResult decode_pdu(const Request& request, Bytes pdu) {
   if (pdu.size() < 2) return refuse(Refusal::kTooShort);
   if (pdu[0] == (request.function | kExceptionBit)) {
     return pdu.size() == 2 ? refuse(Refusal::kException, pdu[1]) : refuse(Refusal::kMalformed);
@@ -39,7 +39,7 @@ DecodeResult decode_pdu(const ModbusRequest& request, Bytes pdu) {
   if (data.size() < pdu[1]) return refuse(Refusal::kTooShort);
   if (data.size() > pdu[1]) return refuse(Refusal::kMalformed);
 
-  ModbusRegisters registers;
+  Registers registers;
   registers.count = request.count;
   for (std::size_t i = 0; i < registers.count; ++i) registers.values[i] = big_endian(data, 2 * i);
   return registers;
@@ -52,19 +52,19 @@ bool has_right_crc(Bytes message) {
 
 }  // namespace
 
-std::array<std::uint8_t, 12> encode_tcp(const ModbusRequest& request) noexcept {
+std::array<std::uint8_t, 12> encode_tcp(const Request& request) noexcept {
   const auto body = encode_rtu_without_crc(request);
   std::array<std::uint8_t, 12> message = {high(request.transaction), low(request.transaction), 0, 0, 0, body.size()};
   for (std::size_t i = 0; i < body.size(); ++i) message[kTcpLengthFrom + i] = body[i];
   return message;
 }
 
-std::array<std::uint8_t, 6> encode_rtu_without_crc(const ModbusRequest& request) noexcept {
+std::array<std::uint8_t, 6> encode_rtu_without_crc(const Request& request) noexcept {
   return {request.unit,         request.function,    high(request.address),
           low(request.address), high(request.count), low(request.count)};
 }
 
-std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept {
+std::array<std::uint8_t, 8> encode_rtu(const Request& request) noexcept {
   const auto body = encode_rtu_without_crc(request);
   const std::uint16_t crc = modbus_crc(body);
   std::array<std::uint8_t, 8> message{};
@@ -74,7 +74,7 @@ std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept {
   return message;
 }
 
-DecodeResult decode_tcp(const ModbusRequest& request, Bytes message) noexcept {
+DecodeResult decode_tcp(const Request& request, Bytes message) noexcept {
   // The header: is this Modbus, whole, and for us?
   if (message.size() < kTcpHeader) return refuse(Refusal::kTooShort);
   const std::size_t whole = kTcpLengthFrom + big_endian(message, 4);
@@ -88,7 +88,7 @@ DecodeResult decode_tcp(const ModbusRequest& request, Bytes message) noexcept {
   return decode_pdu(request, message.subspan(kTcpHeader));
 }
 
-DecodeResult decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
+DecodeResult decode_rtu(const Request& request, Bytes message) noexcept {
   constexpr std::size_t kShortest = 1 + 2 + kCrc;  // an exception
   const bool stray = message.size() > kShortest && message[0] != request.unit &&
                      (message[0] == 0x00 || message[0] == 0xFF) && has_right_crc(message.subspan(1));
@@ -106,8 +106,8 @@ DecodeResult decode_rtu(const ModbusRequest& request, Bytes message) noexcept {
   return decode_pdu(request, message.subspan(1, message.size() - 1 - kCrc));
 }
 
-DecodeResult decode_modbus(ModbusFraming framing, const ModbusRequest& request, Bytes message) noexcept {
-  return framing == ModbusFraming::kTcp ? decode_tcp(request, message) : decode_rtu(request, message);
+DecodeResult decode_modbus(Framing framing, const Request& request, Bytes message) noexcept {
+  return framing == Framing::kTcp ? decode_tcp(request, message) : decode_rtu(request, message);
 }
 
 std::uint16_t modbus_crc(Bytes bytes) noexcept {

@@ -21,13 +21,13 @@ inline constexpr std::size_t kModbusMaxMessage = 260;
 inline constexpr std::size_t kModbusMaxRegisters = 125;
 
 /// How a message is wrapped on its way.
-enum class ModbusFraming : std::uint8_t {
+enum class Framing : std::uint8_t {
   kTcp,  ///< transaction id, protocol id, length, unit id in front
   kRtu,  ///< slave id in front, CRC behind
 };
 
 /// A request for registers.
-struct ModbusRequest {
+struct Request {
   std::uint16_t transaction = 0;  ///< TCP only
   std::uint8_t unit = 1;          ///< slave id
   std::uint8_t function = 3;      ///< 3: holding registers; 4: input registers
@@ -36,23 +36,23 @@ struct ModbusRequest {
 };
 
 /// The request as it goes on a TCP connection.
-std::array<std::uint8_t, 12> encode_tcp(const ModbusRequest& request) noexcept;
+std::array<std::uint8_t, 12> encode_tcp(const Request& request) noexcept;
 
 /// The request as it goes on a serial line, still without its CRC.
-std::array<std::uint8_t, 6> encode_rtu_without_crc(const ModbusRequest& request) noexcept;
+std::array<std::uint8_t, 6> encode_rtu_without_crc(const Request& request) noexcept;
 
 /// The request as it goes on a serial line, its CRC behind it.
-std::array<std::uint8_t, 8> encode_rtu(const ModbusRequest& request) noexcept;
+std::array<std::uint8_t, 8> encode_rtu(const Request& request) noexcept;
 
 /// The content of a reply.
-struct ModbusRegisters {
+struct Registers {
   std::array<std::uint16_t, kModbusMaxRegisters> values{};
   std::size_t count = 0;
 
   std::span<const std::uint16_t> span() const noexcept { return {values.data(), count}; }
 };
 
-struct ModbusRefusal {
+struct RefusedReply {
   Refusal why = Refusal::kMalformed;
   std::uint8_t exception = 0;  ///< the device's exception code, if `why` is kException
 };
@@ -61,16 +61,14 @@ struct ModbusRefusal {
 /// order: kTooShort (no header, or it ends before its own length), kMalformed (not Modbus, or longer than its length),
 /// kNotMine (another transaction or unit), kException, kMalformed (another function or byte count). Reads any bytes
 /// whatsoever. Thread-safe and realtime-safe: yes.
-Result<ModbusRegisters, ModbusRefusal> decode_tcp(const ModbusRequest& request,
-                                                  std::span<const std::uint8_t> message) noexcept;
+Result<Registers, RefusedReply> decode_tcp(const Request& request, std::span<const std::uint8_t> message) noexcept;
 
 /// The same for a serial line, with kBadChecksum before kNotMine. One stray byte 0x00 or 0xFF in front, as RS-485
 /// transceivers make when they turn around, is skipped if the rest is a message with a right CRC.
-Result<ModbusRegisters, ModbusRefusal> decode_rtu(const ModbusRequest& request,
-                                                  std::span<const std::uint8_t> message) noexcept;
+Result<Registers, RefusedReply> decode_rtu(const Request& request, std::span<const std::uint8_t> message) noexcept;
 
-Result<ModbusRegisters, ModbusRefusal> decode_modbus(ModbusFraming framing, const ModbusRequest& request,
-                                                     std::span<const std::uint8_t> message) noexcept;
+Result<Registers, RefusedReply> decode_modbus(Framing framing, const Request& request,
+                                              std::span<const std::uint8_t> message) noexcept;
 
 /// CRC-16/MODBUS; its low byte goes first on the wire.
 std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) noexcept;

@@ -15,7 +15,7 @@ std::uint16_t swapped(std::uint16_t value) {
 }
 
 /// The bits of the number, brought into the order ABCD.
-std::uint32_t ordered_bits(const ModbusQuantity& quantity, std::span<const std::uint16_t> registers) {
+std::uint32_t ordered_bits(const Quantity& quantity, std::span<const std::uint16_t> registers) {
   const bool swap_bytes = quantity.order == ByteOrder::kBADC || quantity.order == ByteOrder::kDCBA;
   const bool swap_words = quantity.order == ByteOrder::kCDAB || quantity.order == ByteOrder::kDCBA;
   const auto word = [&](std::size_t i) { return swap_bytes ? swapped(registers[i]) : registers[i]; };
@@ -69,8 +69,7 @@ std::size_t register_count(RegisterType type) noexcept {
   return type == RegisterType::kU16 || type == RegisterType::kI16 ? 1 : 2;
 }
 
-Result<double, Refusal> decode_number(const ModbusQuantity& quantity,
-                                      std::span<const std::uint16_t> registers) noexcept {
+Result<double, Refusal> decode_number(const Quantity& quantity, std::span<const std::uint16_t> registers) noexcept {
   if (registers.size() < register_count(quantity.type)) return Refusal::kTooShort;
 
   // The device's own mark for "no value"; a NaN is one by nature.
@@ -88,8 +87,7 @@ Result<double, Refusal> decode_number(const ModbusQuantity& quantity,
   return value;
 }
 
-Result<double, Refusal> decode_speed_m_s(const ModbusQuantity& quantity,
-                                         std::span<const std::uint16_t> registers) noexcept {
+Result<double, Refusal> decode_speed_m_s(const Quantity& quantity, std::span<const std::uint16_t> registers) noexcept {
   const auto number = decode_number(quantity, registers);
   if (!number) return number.error();
   const double speed_m_s = *number * metres_per_second(quantity.unit);
@@ -99,7 +97,7 @@ Result<double, Refusal> decode_speed_m_s(const ModbusQuantity& quantity,
   return speed_m_s;
 }
 
-Result<double, Refusal> decode_direction_deg(const ModbusQuantity& quantity,
+Result<double, Refusal> decode_direction_deg(const Quantity& quantity,
                                              std::span<const std::uint16_t> registers) noexcept {
   const auto number = decode_number(quantity, registers);
   if (!number) return number.error();

@@ -30,7 +30,7 @@ enum class DirectionMap : std::uint8_t { kDegrees, kGear8, kPoint16 };
 inline constexpr std::array<std::string_view, 3> kDirectionMapNames = {"degrees", "8-gear", "16-point"};
 
 /// One quantity of a device: its registers and how they are decoded.
-struct ModbusQuantity {
+struct Quantity {
   std::uint8_t slave = 1;
   std::uint8_t function = 3;
   std::uint16_t address = 0;  ///< as it goes on the wire
@@ -52,15 +52,13 @@ std::size_t register_count(RegisterType type) noexcept;
 /// The number that `registers` (register_count() of them, in wire order) hold, scaled, in any unit; or why there is
 /// none: kTooShort, kInvalid (the device's mark), kImplausible (out of the stated range, or not finite). Thread-safe,
 /// realtime-safe: yes.
-Result<double, Refusal> decode_number(const ModbusQuantity& quantity,
-                                      std::span<const std::uint16_t> registers) noexcept;
+Result<double, Refusal> decode_number(const Quantity& quantity, std::span<const std::uint16_t> registers) noexcept;
 
 /// The same for a speed, in m/s; kImplausible also for one that no wind has.
-Result<double, Refusal> decode_speed_m_s(const ModbusQuantity& quantity,
-                                         std::span<const std::uint16_t> registers) noexcept;
+Result<double, Refusal> decode_speed_m_s(const Quantity& quantity, std::span<const std::uint16_t> registers) noexcept;
 
 /// The same for a direction: degrees clockwise from north that the wind comes from, [0, 360); 360 is 0.
-Result<double, Refusal> decode_direction_deg(const ModbusQuantity& quantity,
+Result<double, Refusal> decode_direction_deg(const Quantity& quantity,
                                              std::span<const std::uint16_t> registers) noexcept;
 
 }  // namespace yuragi::drivers::decode::modbus

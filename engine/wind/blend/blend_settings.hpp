@@ -10,7 +10,7 @@
 namespace yuragi::wind::blend {
 
 /// The configuration of one source of a blend.
-struct BlendSourceSettings {
+struct SourceSettings {
   /// Relative: only the fluctuations of its readings are used, neither their scale nor their mean (a microphone). It
   /// supplies the gusts that are too fast for the absolute sources. Where it is the only source its readings are used
   /// unchanged.
@@ -30,7 +30,7 @@ struct BlendSourceSettings {
   double unchanged_for_s = 0.0;     ///< it speaks on change only: a silence of up to so long is none; 0: it does not
 };
 
-struct BlendSettings {
+struct Settings {
   /// The wind without a sensor: mean, direction, turbulence intensity, seed.
   turbulence::SyntheticWindSettings climate;
   double length_m = 57.0;        ///< how far its gusts reach: the integral length scale
@@ -45,7 +45,7 @@ struct BlendSettings {
   /// The site's measured spectrum: corrects the noise of slow sources, and is updated by sources with `fits_site`.
   /// Used on the estimator's thread only. None: no correction.
   std::shared_ptr<turbulence::SiteSpectrum> site{};
-  std::vector<BlendSourceSettings> sources{};  ///< by their order; those that are missing have the defaults
+  std::vector<SourceSettings> sources{};  ///< by their order; those that are missing have the defaults
 };
 
 }  // namespace yuragi::wind::blend

@@ -45,14 +45,14 @@ double part_of_octave(double ratio) noexcept {
   return ratio >= 2.0 ? 1.0 : std::log2(ratio);
 }
 
-std::vector<BlendSourceSettings> completed(std::vector<BlendSourceSettings> sources, std::size_t count) {
+std::vector<SourceSettings> completed(std::vector<SourceSettings> sources, std::size_t count) {
   sources.resize(count);
   return sources;
 }
 
 }  // namespace
 
-BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings& settings,
+BlendedEstimator::BlendedEstimator(std::size_t source_count, const Settings& settings,
                                    std::shared_ptr<const turbulence::GustNoise> noise)
     : settings_(settings),
       climate_(wind_from(settings.climate.mean_speed_m_s, settings.climate.mean_direction_deg)),
@@ -84,10 +84,10 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
       2.0 * std::numbers::pi /
       noise_->octaves()[turbulence::GustNoise::kFirstTileOctave + turbulence::GustNoise::kTileOctaves].from_rad_m;
   sources_.reserve(source_count);
-  for (const BlendSourceSettings& source : settings_.sources) sources_.emplace_back(settings, source, *noise_);
+  for (const SourceSettings& source : settings_.sources) sources_.emplace_back(settings, source, *noise_);
 }
 
-bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noexcept {
+bool BlendedEstimator::accept(std::size_t index, const Reading& reading) noexcept {
   if (index >= sources_.size()) return false;
   return sources_[index].accept(reading, {.ahead = ground_.gusts.ahead,
                                           .is_direction_live = is_direction_live(index),
@@ -188,9 +188,9 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
 }
 
 /// A source's mean (level 0) or band, with the gain of a relative one.
-WindVector BlendedEstimator::level_of(std::size_t index, std::size_t level) const noexcept {
-  const BlendSource& source = sources_[index];
-  const WindVector value = level == 0 ? source.mean() : source.band(level - 1);
+Vector BlendedEstimator::level_of(std::size_t index, std::size_t level) const noexcept {
+  const SourceEstimator& source = sources_[index];
+  const Vector value = level == 0 ? source.mean() : source.band(level - 1);
   if (!settings_.sources[index].is_relative) return value;
   return (level == 0 ? source.scale.mean_gain() : source.scale.gust_gain()) * value;
 }
@@ -232,7 +232,7 @@ BlendedEstimator::MeasuredMean BlendedEstimator::measure_mean() noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Share& share = shares_[i];
     const bool is_relative = settings_.sources[i].is_relative;
-    const WindVector mean = level_of(i, 0);
+    const Vector mean = level_of(i, 0);
     measured.weight += share.middle;
     measured.mean = measured.mean + share.middle * mean;
     measured.speed_m_s += share.middle * sources_[i].speed_m_s() * (is_relative ? sources_[i].scale.mean_gain() : 1.0);
@@ -287,7 +287,7 @@ BlendedEstimator::Power BlendedEstimator::measured_power(const turbulence::Octav
 
 /// The mean wind carries the gusts, and sets the downwind direction; their eddies turn over as the turbulence does.
 void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) noexcept {
-  WindVector& ahead = ground_.gusts.ahead;
+  Vector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(measured.mean);
   if (speed_m_s > 0.0) {
     const double calm = std::clamp(speed_m_s / kCalm_m_s, 0.0, 1.0);
@@ -340,7 +340,7 @@ void BlendedEstimator::place_pens() noexcept {
     largest = std::max(largest, pen.weight);
     all += pen.weight;
   }
-  const WindVector ahead = stroke_.ahead;
+  const Vector ahead = stroke_.ahead;
   for (std::size_t i = 0; i < pens_.size(); ++i) {
     const PenPlaces::Place& place = places_.place(i);
     const double upwind_m = place.is_edge ? reach_m_ : place.lead_m;
@@ -365,7 +365,7 @@ void BlendedEstimator::write_gusts() noexcept {
     ground::WindPen& pen = stroke_.pens[p];
     pen.weights.fill(0.0);
     for (std::size_t level = 0; level <= kBands; ++level) {
-      WindVector gust;
+      Vector gust;
       for (std::size_t i = 0; i < sources_.size(); ++i) {
         const double share = pens_[p].shares[i][level];
         const double written = share * (level == 0 ? 1.0 : fade_[level]);
@@ -497,7 +497,7 @@ turbulence::GustNoise::Moment BlendedEstimator::gusts_at(std::size_t pen) const 
 
 /// The wind that is shown, and the samples that go onto the tapes.
 void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
-  const WindVector way = noise_->everywhere(ground_.gusts);
+  const Vector way = noise_->everywhere(ground_.gusts);
   ground_.everywhere = measured.mean + way;
   state_.upwind_m = 0.0;
   double configured = 0.0;
@@ -526,7 +526,7 @@ void BlendedEstimator::show(const MeasuredMean& measured) noexcept {
   }
 }
 
-WindState BlendedEstimator::advance(MonoTime now) noexcept {
+State BlendedEstimator::advance(MonoTime now) noexcept {
   is_first_ = !has_begun_;
   if (is_first_) {
     has_begun_ = true;
@@ -545,7 +545,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
     choice_.set_live(i, sources_[i].record().is_live(now, settings_.stale_intervals));
   }
   choice_.step(dt_s);
-  for (BlendSource& source : sources_) {
+  for (SourceEstimator& source : sources_) {
     if (source.record().has_reading()) source.step(now, dt_s, parts);
   }
   share_out(dt_s);
@@ -562,9 +562,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
 
   state_.live_weight = measured.trust;
   state_.reading_age_s = newest_age_s();
-  state_.source = measured.trust > 0.99   ? WindSource::kLive
-                  : measured.trust < 0.01 ? WindSource::kDefault
-                                          : WindSource::kHandover;
+  state_.source = measured.trust > 0.99 ? Source::kLive : measured.trust < 0.01 ? Source::kDefault : Source::kHandover;
   return state_;
 }
 

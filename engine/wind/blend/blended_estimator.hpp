@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "engine/wind/blend/blend_settings.hpp"
-#include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/blend/gust_reach_fit.hpp"
 #include "engine/wind/blend/mean_wind_plane.hpp"
 #include "engine/wind/blend/pen_places.hpp"
 #include "engine/wind/blend/source_choice.hpp"
+#include "engine/wind/blend/source_estimator.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
 #include "engine/wind/source_report.hpp"
@@ -57,22 +57,22 @@ class BlendedEstimator {
  public:
   /// `noise`: shared with whoever reads the wind at other places. The climate's seed selects where on it the gusts
   /// begin. Allocates.
-  BlendedEstimator(std::size_t source_count, const BlendSettings& settings,
+  BlendedEstimator(std::size_t source_count, const Settings& settings,
                    std::shared_ptr<const turbulence::GustNoise> noise);
 
   /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored:
   /// false.
-  bool accept(std::size_t source, const WindReading& reading) noexcept;
+  bool accept(std::size_t source, const Reading& reading) noexcept;
 
   /// Advances to `now` and returns the wind at the place of the measurement.
-  WindState advance(MonoTime now) noexcept;
+  State advance(MonoTime now) noexcept;
 
   /// The same wind over the ground, as of the last advance(); without tapes.
-  /// Other scenes reach farther, or less far: BlendSettings::reach_m. The windward edge moves there as the wind blows,
+  /// Other scenes reach farther, or less far: Settings::reach_m. The windward edge moves there as the wind blows,
   /// so that nothing jumps. Realtime-safe.
   void set_reach(double reach_m) noexcept { settings_.reach_m = reach_m; }
 
-  const ground::GroundWind& ground() const noexcept { return ground_; }
+  const ground::Wind& ground() const noexcept { return ground_; }
   /// What the last advance() adds to the tapes.
   const ground::WindStroke& stroke() const noexcept { return stroke_; }
 
@@ -118,7 +118,7 @@ class BlendedEstimator {
 
   /// The mean by all sources together, and its weight.
   struct MeasuredMean {
-    WindVector mean;
+    Vector mean;
     double weight = 0.0;     ///< of the means that are measured; the climate's has the rest
     double speed_m_s = 0.0;  ///< slow mean
     double trust = 0.0;      ///< of the bands that can be measured: 1 while readings are on time
@@ -143,7 +143,7 @@ class BlendedEstimator {
   MeasuredMean measure_mean() noexcept;
   double trust() const noexcept;
   double newest_age_s() const noexcept;
-  WindVector level_of(std::size_t source, std::size_t level) const noexcept;
+  Vector level_of(std::size_t source, std::size_t level) const noexcept;
   void carry_gusts(const MeasuredMean& measured, double dt_s) noexcept;
   double gust_length_m(const MeasuredMean& measured) const noexcept;
   void place_pens() noexcept;
@@ -157,20 +157,20 @@ class BlendedEstimator {
   OpenPart open_part(double frequency_hz, const MeasuredMean& measured) const noexcept;
   double variance_share(std::size_t source, const OpenPart& open, const MeasuredMean& measured) const noexcept;
 
-  BlendSettings settings_;
-  WindVector climate_;
+  Settings settings_;
+  Vector climate_;
   std::shared_ptr<const turbulence::GustNoise> noise_;
   turbulence::GustVariances climate_along_, climate_across_;
-  std::vector<BlendSource> sources_;
+  std::vector<SourceEstimator> sources_;
   SourceChoice choice_;
   MeanWindPlane plane_;
   PenPlaces places_;
   std::vector<Pen> pens_;
   GustReachFit reach_fit_;
-  ground::GroundWind ground_;
+  ground::Wind ground_;
   ground::WindStroke stroke_;
   double advection_m_s_ = 0.0;
-  WindState state_;
+  State state_;
   double reach_m_ = 0.0;      ///< where the windward edge is
   double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
   bool has_begun_ = false;

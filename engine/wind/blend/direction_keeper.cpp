@@ -27,25 +27,24 @@ bool is_multiple(double turn_deg, double step_deg) noexcept {
 
 }  // namespace
 
-WindVector turned_toward(WindVector unit, WindVector other, double part) noexcept {
+Vector turned_toward(Vector unit, Vector other, double part) noexcept {
   if (part >= 1.0) return other;
   const double cross = unit.u_m_s * other.v_m_s - unit.v_m_s * other.u_m_s;
   const double dot = unit.u_m_s * other.u_m_s + unit.v_m_s * other.v_m_s;
   const double angle = part * std::atan2(cross, dot);
   const double c = std::cos(angle);
   const double s = std::sin(angle);
-  const WindVector turned{c * unit.u_m_s - s * unit.v_m_s, s * unit.u_m_s + c * unit.v_m_s};
+  const Vector turned{c * unit.u_m_s - s * unit.v_m_s, s * unit.u_m_s + c * unit.v_m_s};
   return (1.0 / speed_of(turned)) * turned;
 }
 
-WindVector DirectionKeeper::take(const WindReading& reading, double dt_s, WindVector otherwise,
-                                 bool otherwise_is_live) noexcept {
+Vector DirectionKeeper::take(const Reading& reading, double dt_s, Vector otherwise, bool otherwise_is_live) noexcept {
   has_vane_ = reading.direction_deg.has_value();
   if (!has_vane_) {
     if (otherwise_is_live || !is_known_) toward_ = otherwise;
     return toward_;
   }
-  const WindVector measured = wind_from(1.0, *reading.direction_deg);
+  const Vector measured = wind_from(1.0, *reading.direction_deg);
   note_step(*reading.direction_deg);
   const double wind = std::clamp(reading.speed_m_s / kVaneCalm_m_s, 0.0, 1.0);
   const double smoothed = is_known_ && memory_s_ > 0.0 ? -std::expm1(-dt_s / memory_s_) : 1.0;

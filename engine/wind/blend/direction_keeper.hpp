@@ -21,7 +21,7 @@ class DirectionKeeper {
 
   /// Takes a reading, `dt_s` after the one before. `otherwise` is the direction for a source that never sent any, and,
   /// where `otherwise_is_live`, for every reading without one. Returns a unit vector, downwind.
-  WindVector take(const WindReading& reading, double dt_s, WindVector otherwise, bool otherwise_is_live) noexcept;
+  Vector take(const Reading& reading, double dt_s, Vector otherwise, bool otherwise_is_live) noexcept;
 
   /// Did the last reading have a direction?
   bool has_vane() const noexcept { return has_vane_; }
@@ -46,7 +46,7 @@ class DirectionKeeper {
   void note_step(double direction_deg) noexcept;
 
   double given_step_deg_;
-  WindVector toward_{0.0, 1.0};
+  Vector toward_{0.0, 1.0};
   bool is_known_ = false;
   bool has_vane_ = false;
   double memory_s_ = 0.0;
@@ -58,6 +58,6 @@ class DirectionKeeper {
 };
 
 /// A unit vector turned toward another by a part (0 to 1) of the angle between them, the shorter way round.
-WindVector turned_toward(WindVector unit, WindVector other, double part) noexcept;
+Vector turned_toward(Vector unit, Vector other, double part) noexcept;
 
 }  // namespace yuragi::wind::blend

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/math/portable.hpp"
-#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/source_estimator.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
 
 namespace yuragi::wind::blend {
@@ -141,8 +141,8 @@ void GustReachFit::sample(std::size_t band, double passed_s, const ground::WindS
     if (pen == nullptr || pen->weights[1 + band] < kMinResolved) continue;
     now.is_known = true;
     const double per_speed = 1.0 / stroke.coherence.speed_m_s;
-    now.gust = per_speed *
-               WindVector{static_cast<double>(pen->now.east_m_s[band]), static_cast<double>(pen->now.north_m_s[band])};
+    now.gust =
+        per_speed * Vector{static_cast<double>(pen->now.east_m_s[band]), static_cast<double>(pen->now.north_m_s[band])};
     one.known_s = std::min(one.known_s + passed_s, kPowerMemory_s);
     const double power = dot(now.gust, now.gust);
     one.power += std::min(passed_s / one.known_s, 1.0) * (power - one.power);
@@ -166,9 +166,9 @@ void GustReachFit::compare(std::size_t band, const ground::WindStroke& stroke, s
       const double across_m = north_m * stroke.ahead.u_m_s - east_m * stroke.ahead.v_m_s;
       // The gust that is at j now was at i so long before, of its way.
       const double before_m = along_m - stroke.coherence.speed_m_s * (places[i].delay_s - places[j].delay_s);
-      WindVector then;
+      Vector then;
       if (!read(before_m >= 0.0 ? first : second, newest, stroke.way_m - std::abs(before_m), stroke, then)) continue;
-      const WindVector now = (before_m >= 0.0 ? second : first).ring[newest].gust;
+      const Vector now = (before_m >= 0.0 ? second : first).ring[newest].gust;
       observe(band, dot(then, now) / powers, along_m, across_m, stroke.coherence);
     }
   }
@@ -176,7 +176,7 @@ void GustReachFit::compare(std::size_t band, const ground::WindStroke& stroke, s
 
 /// A band when the wind had come so far; false if it is not known then, or the wind has turned since.
 bool GustReachFit::read(const Trace& trace, std::size_t newest, double way_m, const ground::WindStroke& stroke,
-                        WindVector& gust) const noexcept {
+                        Vector& gust) const noexcept {
   for (std::size_t back = 0; back + 1 < kSamples; ++back) {
     const Sample& after = trace.ring[(newest + kSamples - back) % kSamples];
     const Sample& before = trace.ring[(newest + kSamples - back - 1) % kSamples];

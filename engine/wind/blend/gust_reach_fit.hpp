@@ -65,7 +65,7 @@ class GustReachFit {
   struct Sample {
     double way_m = 0.0;
     double carried_east_m = 0.0, carried_south_m = 0.0;
-    WindVector gust{};
+    Vector gust{};
     bool is_known = false;
   };
   static constexpr std::size_t kSamples = 128;
@@ -84,7 +84,7 @@ class GustReachFit {
   void observe(std::size_t band, double product, double along_m, double across_m,
                const ground::GustCoherence& law) noexcept;
   bool read(const Trace& trace, std::size_t newest, double way_m, const ground::WindStroke& stroke,
-            WindVector& gust) const noexcept;
+            Vector& gust) const noexcept;
 
   std::size_t place_count_;
   std::vector<Trace> traces_;

@@ -15,9 +15,9 @@ constexpr double kMinShareSum = 1e-9;
 
 }  // namespace
 
-MeanWindPlane::MeanWindPlane(std::span<const BlendSourceSettings> sources) {
+MeanWindPlane::MeanWindPlane(std::span<const SourceSettings> sources) {
   bool is_first = true;
-  for (const BlendSourceSettings& source : sources) {
+  for (const SourceSettings& source : sources) {
     places_.push_back({source.east_m, source.south_m});
     if (source.is_relative) continue;
     ends_.west_m = is_first ? source.east_m : std::min(ends_.west_m, source.east_m);

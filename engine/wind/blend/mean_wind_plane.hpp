@@ -19,7 +19,7 @@ struct PlaceWeights {
 /// close together. Thread-safe: reading, yes. Realtime-safe: yes.
 class MeanWindPlane {
  public:
-  explicit MeanWindPlane(std::span<const BlendSourceSettings> sources);
+  explicit MeanWindPlane(std::span<const SourceSettings> sources);
 
   /// Do all stand at one place?
   bool is_point() const noexcept { return length_m_ <= 0.0; }

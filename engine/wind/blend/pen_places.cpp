@@ -8,14 +8,14 @@
 
 namespace yuragi::wind::blend {
 
-PenPlaces::PenPlaces(std::span<const BlendSourceSettings> sources) : pens_(sources.size()) {
+PenPlaces::PenPlaces(std::span<const SourceSettings> sources) : pens_(sources.size()) {
   const bool has_absolute = std::ranges::any_of(sources, [](const auto& source) { return !source.is_relative; });
   for (std::size_t i = 0; i < sources.size(); ++i) {
     if (!has_absolute || !sources[i].is_relative) pens_[i] = pen_for(sources[i]);
   }
 }
 
-std::size_t PenPlaces::pen_for(const BlendSourceSettings& source) {
+std::size_t PenPlaces::pen_for(const SourceSettings& source) {
   constexpr double kSamePlace_m = 0.5;
   const auto distance_m = [&source](const Place& place) {
     return place.is_edge ? 0.0 : math::length(place.east_m - source.east_m, place.south_m - source.south_m);

@@ -15,7 +15,7 @@ namespace yuragi::wind::blend {
 /// absolute one does. Allocates at construction only. Thread-safe: reading, yes.
 class PenPlaces {
  public:
-  explicit PenPlaces(std::span<const BlendSourceSettings> sources);
+  explicit PenPlaces(std::span<const SourceSettings> sources);
 
   struct Place {
     bool is_edge = true;
@@ -31,7 +31,7 @@ class PenPlaces {
   }
 
  private:
-  std::size_t pen_for(const BlendSourceSettings& source);
+  std::size_t pen_for(const SourceSettings& source);
 
   std::vector<Place> places_;
   std::vector<std::size_t> pens_;  ///< of each source

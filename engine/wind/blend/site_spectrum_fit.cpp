@@ -18,8 +18,7 @@ constexpr double kBeyond_octaves = 0.5;
 
 }  // namespace
 
-SiteSpectrumFit::SiteSpectrumFit(const turbulence::TurbulencePrior& prior, double fit_memory_s)
-    : slow_(prior, fit_memory_s) {}
+SiteSpectrumFit::SiteSpectrumFit(const turbulence::Prior& prior, double fit_memory_s) : slow_(prior, fit_memory_s) {}
 
 void SiteSpectrumFit::break_off() noexcept {
   slow_.break_off();
@@ -55,14 +54,14 @@ void SiteSpectrumFit::update(const Observation& observation, const turbulence::W
     // Where among the quick source's scales, means over interval * 2^scale, it is.
     const double tau_s = kSeenTimesTau / turbulence::SiteSpectrum::centre_hz(octave);
     const double place = std::log2(tau_s / observation.interval_s);
-    if (place < -kBeyond_octaves || place > static_cast<double>(turbulence::TurbulenceFit::kScales - 2)) continue;
+    if (place < -kBeyond_octaves || place > static_cast<double>(turbulence::Fit::kScales - 2)) continue;
     const double inside = std::max(place, 0.0);
     const auto below = static_cast<std::size_t>(inside);
     const double t = inside - static_cast<double>(below);
     const auto measured = [&](std::size_t scale) {
       const double seen_tau_s = std::ldexp(observation.interval_s, static_cast<int>(scale));
-      return std::log10(of_both(quick, [&](const turbulence::TurbulenceFit& fit) { return fit.measured(scale); }) /
-                        of_both(slow_, [&](const turbulence::TurbulenceFit& fit) { return fit.expected(seen_tau_s); }));
+      return std::log10(of_both(quick, [&](const turbulence::Fit& fit) { return fit.measured(scale); }) /
+                        of_both(slow_, [&](const turbulence::Fit& fit) { return fit.expected(seen_tau_s); }));
     };
     const double low = measured(below);
     const double excess_db = 10.0 * (t > 0.0 ? low + t * (measured(below + 1) - low) : low);

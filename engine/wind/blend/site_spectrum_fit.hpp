@@ -14,11 +14,11 @@ namespace yuragi::wind::blend {
 class SiteSpectrumFit {
  public:
   /// `prior` and `fit_memory_s`: of the slow source that is to be corrected.
-  SiteSpectrumFit(const turbulence::TurbulencePrior& prior, double fit_memory_s);
+  SiteSpectrumFit(const turbulence::Prior& prior, double fit_memory_s);
 
   struct Observation {
-    WindVector wind;         ///< a reading: the mean over `interval_s`, which began `interval_s` ago
-    WindVector ahead;        ///< unit vector downwind
+    Vector wind;             ///< a reading: the mean over `interval_s`, which began `interval_s` ago
+    Vector ahead;            ///< unit vector downwind
     double speed_m_s = 0.0;  ///< slow mean
     double interval_s = 0.0;
     bool has_across = false;
@@ -35,7 +35,7 @@ class SiteSpectrumFit {
               turbulence::SiteSpectrum& site) const noexcept;
 
   turbulence::WindTurbulence slow_;
-  WindVector sum_{};
+  Vector sum_{};
   std::size_t count_ = 0;
 };
 

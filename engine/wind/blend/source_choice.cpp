@@ -15,9 +15,9 @@ constexpr double kForgivenAfter_s = 600.0;
 
 }  // namespace
 
-SourceChoice::SourceChoice(std::span<const BlendSourceSettings> sources, double handover_s, double return_after_s)
+SourceChoice::SourceChoice(std::span<const SourceSettings> sources, double handover_s, double return_after_s)
     : handover_s_(handover_s), return_after_s_(return_after_s) {
-  for (const BlendSourceSettings& settings : sources) {
+  for (const SourceSettings& settings : sources) {
     const int place = static_cast<int>(entries_.size()) + 1;
     Entry entry;
     entry.is_relative = settings.is_relative;

@@ -22,7 +22,7 @@ namespace yuragi::wind::blend {
 class SourceChoice {
  public:
   /// A source for each of the settings.
-  SourceChoice(std::span<const BlendSourceSettings> sources, double handover_s, double return_after_s);
+  SourceChoice(std::span<const SourceSettings> sources, double handover_s, double return_after_s);
 
   /// Advances by dt_s; set_live() has been called for each source before.
   void set_live(std::size_t source, bool is_live) noexcept { entries_[source].is_live = is_live; }

@@ -12,13 +12,13 @@ namespace yuragi::wind::blend {
 /// Thread-safe: no. Realtime-safe: yes.
 class SourceRecord {
  public:
-  /// `unchanged_for_s`: so long a silence of the source means that nothing has changed (BlendSourceSettings).
+  /// `unchanged_for_s`: so long a silence of the source means that nothing has changed (SourceSettings).
   explicit SourceRecord(double unchanged_for_s = 0.0) noexcept
       : unchanged_for_s_(unchanged_for_s),
         interval_(unchanged_for_s > 0.0 ? ReadingInterval::Speaks::kOnChange : ReadingInterval::Speaks::kAtIntervals) {}
 
   /// Takes a plausible reading, not older than the last. Returns whether it is a new one (ReadingInterval::take).
-  bool take(const WindReading& reading) noexcept {
+  bool take(const Reading& reading) noexcept {
     const bool is_new =
         !last_ || interval_.take(seconds(reading.time.mono - last_->time.mono), says_the_same(reading, *last_));
     last_ = reading;
@@ -31,7 +31,7 @@ class SourceRecord {
   }
 
   bool has_reading() const noexcept { return last_.has_value(); }
-  const std::optional<WindReading>& last() const noexcept { return last_; }
+  const std::optional<Reading>& last() const noexcept { return last_; }
 
   /// Between new readings; 0 before the second reading.
   double interval_s() const noexcept { return interval_.interval_s(); }
@@ -74,7 +74,7 @@ class SourceRecord {
   /// Of a station that repeats each message: more than the 18 s of Acurite's.
   static constexpr double kUnsettledInterval_s = 20.0;
 
-  std::optional<WindReading> last_;
+  std::optional<Reading> last_;
   double unchanged_for_s_;
   ReadingInterval interval_;
 };

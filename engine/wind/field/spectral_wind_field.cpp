@@ -68,7 +68,7 @@ class CellPower {
 
   VonKarmanModes modes_;
   bool is_space_;
-  WindVector ahead_;
+  Vector ahead_;
   double cell_rad_m_;
 };
 

@@ -70,7 +70,7 @@ class SpectralWindField final : public WindField {
  private:
   /// The part of a component's gusts that is longer than the tile.
   struct Way {
-    noise::NoiseTile1 noise;
+    noise::Tile1 noise;
     double deviation_m_s = 0.0;
   };
   static Way make_way(const WindFieldSettings& settings, turbulence::WindComponent component, std::uint64_t seed);
@@ -81,7 +81,7 @@ class SpectralWindField final : public WindField {
   double period_m_;
   double speed_m_s_;
   double stress_;
-  WindVector ahead_;                 ///< unit vector downwind
+  Vector ahead_;                     ///< unit vector downwind
   double turning_rad_s_ = 0.0;       ///< of the eddies as long as the tile
   noise::MovingNoise noise_;         ///< a field a component
   std::vector<Way> ways_;            ///< one a component

@@ -2,14 +2,14 @@
 
 namespace yuragi::wind::field {
 
-WindPlace FieldGrid::place(std::size_t i, std::size_t j, std::size_t k) const noexcept {
+WindPlace Grid::place(std::size_t i, std::size_t j, std::size_t k) const noexcept {
   const auto steps = [](std::size_t index, std::size_t middle) {
     return static_cast<double>(index) - static_cast<double>(middle);
   };
   return {spacing_m * steps(i, count_x / 2), spacing_m * steps(j, 0), spacing_m * steps(k, count_z / 2)};
 }
 
-void sample_field(const WindField& field, const FieldGrid& grid, std::span<float> out) noexcept {
+void sample_field(const WindField& field, const Grid& grid, std::span<float> out) noexcept {
   const std::size_t size = grid.size();
   std::size_t next = 0;
   for (std::size_t k = 0; k < grid.count_z; ++k) {

@@ -38,23 +38,22 @@ class WindField {
 /// live on.
 class GroundWindField final : public WindField {
  public:
-  GroundWindField(const ground::GroundWind& ground, const turbulence::GustNoise& noise)
-      : ground_(ground), noise_(noise) {}
+  GroundWindField(const ground::Wind& ground, const turbulence::GustNoise& noise) : ground_(ground), noise_(noise) {}
 
   int dims() const noexcept override { return 2; }
   WindVector3 at(WindPlace place) const noexcept override {
-    const WindVector wind = ground_.at(noise_, place.x_m, place.z_m);
+    const Vector wind = ground_.at(noise_, place.x_m, place.z_m);
     return {wind.u_m_s, wind.v_m_s, 0.0};
   }
 
  private:
-  const ground::GroundWind& ground_;
+  const ground::Wind& ground_;
   const turbulence::GustNoise& noise_;
 };
 
 /// Places in rows: sample (i, j, k) stands i - count_x / 2 (rounded down) steps east of the middle, j up from the
 /// ground, and k - count_z / 2 south.
-struct FieldGrid {
+struct Grid {
   std::size_t count_x = 1, count_y = 1, count_z = 1;
   double spacing_m = 1.0;
 
@@ -70,6 +69,6 @@ struct FieldGrid {
 
 /// The field on a grid: all u, then all v, then (of a field of three dimensions) all w; within each z is the slowest
 /// axis, then y, then x. `out` holds field.dims() times grid.size() values.
-void sample_field(const WindField& field, const FieldGrid& grid, std::span<float> out) noexcept;
+void sample_field(const WindField& field, const Grid& grid, std::span<float> out) noexcept;
 
 }  // namespace yuragi::wind::field

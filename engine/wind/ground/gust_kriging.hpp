@@ -29,7 +29,7 @@ class GustKriging {
   /// What changes with the wind alone, not from place to place: for these sensors. `coherent(i, distance_m)`: what is
   /// left of the gusts of sensor i at so many metres of the law's distance, for each lane.
   template <class Coherent>
-  void prepare(std::span<const WindPen> pens, WindVector ahead, const GustCoherence& law, Coherent coherent) noexcept {
+  void prepare(std::span<const WindPen> pens, Vector ahead, const GustCoherence& law, Coherent coherent) noexcept {
     count_ = pens.size();
     for (std::size_t i = 0; i < count_; ++i) {
       presence_[i] = std::clamp(pens[i].presence, 0.0, 1.0);

@@ -23,8 +23,8 @@ using OctaveLanes = std::array<float, kOctaveLanes>;
 struct alignas(64) WindSample {
   BandLanes east_m_s{}, north_m_s{};          ///< the measured gusts of each band, times their weights
   OctaveLanes known_along{}, known_across{};  ///< the part of each noise octave's power that they cover
-  WindVector mean;                            ///< slower than all bands
-  WindVector way;                             ///< the noise's waves that are longer than the ground
+  Vector mean;                                ///< slower than all bands
+  Vector way;                                 ///< the noise's waves that are longer than the ground
   double east_m = 0.0, south_m = 0.0;         ///< the place, less how far the wind had carried the gusts by then
   double gain = 1.0;                          ///< of the ceiling
 };
@@ -50,7 +50,7 @@ struct WindStroke {
   std::size_t pen_count = 0;                           ///< 0: nothing can be measured, there is no tape
   double way_m = 0.0;                                  ///< that the mean wind has come, all in all; never less
   double carried_east_m = 0.0, carried_south_m = 0.0;  ///< and its vector: how far it has carried the gusts
-  WindVector ahead{0.0, 1.0};                          ///< unit vector downwind
+  Vector ahead{0.0, 1.0};                              ///< unit vector downwind
   GustCoherence coherence;
   OctaveLanes octave_hz{};  ///< at which frequency each octave of the tiles passes
   std::array<WindPen, kMaxPens> pens;

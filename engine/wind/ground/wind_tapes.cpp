@@ -103,7 +103,7 @@ class OctaveResponses {
   Octaves turn_rad_s_, usual_power_;
 };
 
-double dot_product(double east, double north, WindVector unit) noexcept {
+double dot_product(double east, double north, Vector unit) noexcept {
   return east * unit.u_m_s + north * unit.v_m_s;
 }
 
@@ -314,8 +314,7 @@ WindTapes::Reading WindTapes::at_pen(const WindSample& now) noexcept {
   reading.way = now.way;
   reading.gain = now.gain;
   for (std::size_t i = 0; i < kBandLanes; ++i) {
-    reading.gusts =
-        reading.gusts + WindVector{static_cast<double>(now.east_m_s[i]), static_cast<double>(now.north_m_s[i])};
+    reading.gusts = reading.gusts + Vector{static_cast<double>(now.east_m_s[i]), static_cast<double>(now.north_m_s[i])};
   }
   for (std::size_t i = 0; i < kOctaveLanes; ++i) {
     reading.noise_along[i] = std::sqrt(std::max(1.0F - now.known_along[i], 0.0F));

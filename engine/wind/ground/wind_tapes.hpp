@@ -48,8 +48,8 @@ class WindTapes {
 
   /// The measured wind at a place.
   struct Known {
-    WindVector mean, way, gusts;  ///< gusts: all measured bands, with what they have kept
-    double gain = 1.0;            ///< of the ceiling, when this wind was measured
+    Vector mean, way, gusts;  ///< gusts: all measured bands, with what they have kept
+    double gain = 1.0;        ///< of the ceiling, when this wind was measured
   };
   /// And the factors on the noise.
   struct Reading : Known {

@@ -34,8 +34,8 @@ double calibrated_speed_m_s(const Calibration& calibration, double speed_m_s) no
 
 }  // namespace
 
-WindReading Calibration::applied_to(const WindReading& reading) const noexcept {
-  WindReading calibrated = reading;
+Reading Calibration::applied_to(const Reading& reading) const noexcept {
+  Reading calibrated = reading;
   calibrated.speed_m_s = calibrated_speed_m_s(*this, reading.speed_m_s);
   if (reading.gust_m_s) calibrated.gust_m_s = calibrated_speed_m_s(*this, *reading.gust_m_s);
   if (reading.direction_deg) {

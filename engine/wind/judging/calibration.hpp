@@ -27,7 +27,7 @@ struct Calibration {
   double north_offset_deg = 0.0;          ///< clockwise; where the sensor's mark points instead of to north
   double height_factor = 1.0;             ///< height_factor(): from the sensor's height to the scene's
 
-  WindReading applied_to(const WindReading& reading) const noexcept;
+  Reading applied_to(const Reading& reading) const noexcept;
 };
 
 /// The reading in m/s (after its unit) that the calibration maps to 0: where its straight line crosses 0. May be below

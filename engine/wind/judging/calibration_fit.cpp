@@ -339,7 +339,7 @@ Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs) {
   measure_fit(
       some,
       [&calibration](double indicated_m_s) {
-        WindReading indicated;
+        Reading indicated;
         indicated.speed_m_s = indicated_m_s;
         return calibration.applied_to(indicated).speed_m_s;
       },

@@ -44,13 +44,13 @@ double median(std::array<double, N> values) noexcept {
 }
 
 /// Without a direction only the speed is compared: as if all winds came from one direction.
-WindVector vector_of(const WindReading& reading) noexcept {
+Vector vector_of(const Reading& reading) noexcept {
   return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
 
 }  // namespace
 
-bool ReadingJudge::judge(const WindReading& reading, std::optional<double> others_m_s) noexcept {
+bool ReadingJudge::judge(const Reading& reading, std::optional<double> others_m_s) noexcept {
   const double time_s = seconds(reading.time.mono.time_since_epoch());
   if (has_begun_ && time_s < last_s_) return false;
   if (!has_begun_) last_s_ = time_s;
@@ -72,7 +72,7 @@ void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
   if (is_implausible_ && fault_ <= ReadingFault::kImplausible) fault_ = ReadingFault::kImplausible;
 }
 
-void ReadingJudge::recalibrate(const WindReading& before, const WindReading& after) noexcept {
+void ReadingJudge::recalibrate(const Reading& before, const Reading& after) noexcept {
   believed_ = 0;
   suspicion_.reset();
   if (fault_ == ReadingFault::kSpike) fault_ = ReadingFault::kNone;
@@ -83,8 +83,7 @@ void ReadingJudge::recalibrate(const WindReading& before, const WindReading& aft
   usual_m_s_ *= factor;
 }
 
-ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
-                                    std::optional<double> others_m_s) noexcept {
+ReadingFault ReadingJudge::fault_of(const Reading& reading, double time_s, std::optional<double> others_m_s) noexcept {
   const bool is_out_of_range = reading.speed_m_s > settings_.max_speed_m_s;
   const bool is_repeated = check_frozen(reading, time_s);
   const bool is_dead = check_seized(reading.speed_m_s, time_s, others_m_s);
@@ -97,7 +96,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
     return is_implausible_ ? ReadingFault::kImplausible : ReadingFault::kSpike;
   }
 
-  const WindVector wind = vector_of(reading);
+  const Vector wind = vector_of(reading);
   const bool is_held_back = check_spike(wind, time_s);
   if (!is_held_back) {
     believe(wind);
@@ -108,7 +107,7 @@ ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
 }
 
 /// A spike, or the beginning of a step? The next readings decide.
-bool ReadingJudge::check_spike(WindVector wind, double time_s) noexcept {
+bool ReadingJudge::check_spike(Vector wind, double time_s) noexcept {
   if (!is_suspect(wind)) {
     dismiss_suspicion();
     return false;
@@ -133,7 +132,7 @@ void ReadingJudge::dismiss_suspicion() noexcept {
 }
 
 /// The median of the last accepted readings, east and north.
-WindVector ReadingJudge::middle() const noexcept {
+Vector ReadingJudge::middle() const noexcept {
   std::array<double, kWindow> u{};
   std::array<double, kWindow> v{};
   for (std::size_t i = 0; i < kWindow; ++i) {
@@ -143,9 +142,9 @@ WindVector ReadingJudge::middle() const noexcept {
   return {median(u), median(v)};
 }
 
-bool ReadingJudge::is_suspect(WindVector wind) const noexcept {
+bool ReadingJudge::is_suspect(Vector wind) const noexcept {
   if (believed_ < kWindow) return false;
-  const WindVector usual = middle();
+  const Vector usual = middle();
   std::array<double, kWindow> distances{};
   for (std::size_t i = 0; i < kWindow; ++i) distances[i] = speed_of(window_[i] - usual);
   const double least_m_s = settings_.least_spike_m_s + 0.5 * speed_of(usual);
@@ -161,7 +160,7 @@ bool ReadingJudge::is_confirmed(double time_s) const noexcept {
          (suspicion_->repeats >= 2 && time_s - suspicion_->since_s >= needed_s);
 }
 
-void ReadingJudge::believe(WindVector wind) noexcept {
+void ReadingJudge::believe(Vector wind) noexcept {
   window_[believed_ % kWindow] = wind;
   ++believed_;
 }
@@ -171,7 +170,7 @@ void ReadingJudge::count(bool is_bad) noexcept {
   is_implausible_ = bad_share_ > (is_implausible_ ? kTrustShare : kGiveUpShare);
 }
 
-bool ReadingJudge::check_frozen(const WindReading& reading, double time_s) noexcept {
+bool ReadingJudge::check_frozen(const Reading& reading, double time_s) noexcept {
   if (!same_ || !says_the_same(reading, *same_)) {
     if (same_) {
       const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);

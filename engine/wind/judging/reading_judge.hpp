@@ -58,7 +58,7 @@ class ReadingJudge {
 
   /// True: accept the reading. Readings come in the order of their times; one that is late is rejected. `others_m_s`:
   /// the speed by the other sensors, where there are any.
-  bool judge(const WindReading& reading, std::optional<double> others_m_s = {}) noexcept;
+  bool judge(const Reading& reading, std::optional<double> others_m_s = {}) noexcept;
 
   /// Counts readings that were refused before they came here as impossible.
   void count_impossible(std::uint64_t readings) noexcept;
@@ -69,7 +69,7 @@ class ReadingJudge {
   /// The sensor's calibration has changed: its last reading, which was `before`, would be `after`. Readings until now
   /// are no measure for the height of those that follow, so that the change is no spike; how long the sensor has
   /// repeated its value or stood still, and how many of its readings were bad, stays known.
-  void recalibrate(const WindReading& before, const WindReading& after) noexcept;
+  void recalibrate(const Reading& before, const Reading& after) noexcept;
 
   /// What is wrong at the moment: kImplausible, kFrozen or kSeized for as long as it lasts, kSpike while a suspect is
   /// held back.
@@ -88,25 +88,25 @@ class ReadingJudge {
  private:
   static constexpr std::size_t kWindow = 7;
 
-  ReadingFault fault_of(const WindReading& reading, double time_s, std::optional<double> others_m_s) noexcept;
+  ReadingFault fault_of(const Reading& reading, double time_s, std::optional<double> others_m_s) noexcept;
   // Each takes the reading, and returns whether it has that fault.
-  bool check_spike(WindVector wind, double time_s) noexcept;
-  bool is_suspect(WindVector wind) const noexcept;
+  bool check_spike(Vector wind, double time_s) noexcept;
+  bool is_suspect(Vector wind) const noexcept;
   bool is_confirmed(double time_s) const noexcept;
   void dismiss_suspicion() noexcept;
-  WindVector middle() const noexcept;
-  void believe(WindVector wind) noexcept;
+  Vector middle() const noexcept;
+  void believe(Vector wind) noexcept;
   void count(bool is_bad) noexcept;
-  bool check_frozen(const WindReading& reading, double time_s) noexcept;
+  bool check_frozen(const Reading& reading, double time_s) noexcept;
   double frozen_patience() const noexcept;
   bool check_seized(double speed_m_s, double time_s, std::optional<double> others_m_s) noexcept;
 
   JudgeSettings settings_;
-  std::array<WindVector, kWindow> window_{};
+  std::array<Vector, kWindow> window_{};
   std::size_t believed_ = 0;
 
   struct Suspicion {
-    WindVector wind;     ///< the first suspect reading
+    Vector wind;         ///< the first suspect reading
     double since_s = 0;  ///< and when
     double jump_m_s = 0;
     std::size_t repeats = 0;
@@ -116,7 +116,7 @@ class ReadingJudge {
   double bad_share_ = 0.0;
   bool is_implausible_ = false;
 
-  std::optional<WindReading> same_;  ///< what is repeated
+  std::optional<Reading> same_;  ///< what is repeated
   double same_since_s_ = 0.0;
   std::size_t same_count_ = 0;
   double resolution_m_s_ = 0.0;        ///< the smallest step seen; 0: none yet

@@ -37,7 +37,7 @@ void follow_to_the_end(math::CriticallyDamped& value, double target, double over
 }
 
 /// The breeze has carried the tapes farther, too.
-void carry_tapes(ground::WindStroke& stroke, WindVector blown_m, double way_m) noexcept {
+void carry_tapes(ground::WindStroke& stroke, Vector blown_m, double way_m) noexcept {
   stroke.way_m += way_m;
   stroke.carried_east_m += blown_m.u_m_s;
   stroke.carried_south_m -= blown_m.v_m_s;
@@ -115,7 +115,7 @@ void WindShaping::change_strengths(double dt_s) noexcept {
 }
 
 void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
-  WindState& state = wind.state;
+  State& state = wind.state;
   const double dt_s = has_begun_ ? std::max(0.0, seconds(state.time - time_)) : 0.0;
   if (!has_begun_ || state.time > time_) time_ = state.time;
 
@@ -143,7 +143,7 @@ void WindShaping::apply_gains(ground::DrivingWind& wind) const noexcept {
   wind.ground = gain * wind.ground;
   if (now_.gusts == 1.0) return;
   wind.ground.gust_gain = now_.gusts;
-  const WindVector way = noise_->everywhere(wind.ground.gusts);
+  const Vector way = noise_->everywhere(wind.ground.gusts);
   wind.ground.everywhere = wind.ground.everywhere + (now_.gusts - 1.0) * way;
   for (float& deviation : wind.ground.gusts.along_m_s) deviation *= static_cast<float>(now_.gusts);
   for (float& deviation : wind.ground.gusts.across_m_s) deviation *= static_cast<float>(now_.gusts);
@@ -224,7 +224,7 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
 void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
   const double breeze_m_s = std::clamp(breeze_.value, 0.0, now_.floor_m_s);
   if (breeze_m_s <= 0.0 && blown_m_.u_m_s == 0.0 && blown_m_.v_m_s == 0.0) return;
-  ground::GroundWind& ground = wind.ground;
+  ground::Wind& ground = wind.ground;
   turbulence::GustNoise::Moment& gusts = ground.gusts;
   blown_m_ = blown_m_ + breeze_m_s * dt_s * gusts.ahead;
   ground.advection = ground.advection + breeze_m_s * gusts.ahead;
@@ -244,7 +244,7 @@ void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
     gusts.across_m_s[i] = static_cast<float>(math::length(static_cast<double>(gusts.across_m_s[i]), across_m_s));
   }
   know_less(wind.stroke, real, gusts);
-  const WindVector breeze = opening_.value * breeze_m_s * gusts.ahead + noise_->everywhere(own);
+  const Vector breeze = opening_.value * breeze_m_s * gusts.ahead + noise_->everywhere(own);
   ground.breeze = ground.breeze + breeze;
   ground.everywhere = ground.everywhere + breeze;
 

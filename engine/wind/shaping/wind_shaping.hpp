@@ -117,7 +117,7 @@ class WindShaping {
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   math::CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
   math::CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0}, openness_{1.0};
-  WindVector blown_m_;        ///< how far the breeze has carried the gusts besides
+  Vector blown_m_;            ///< how far the breeze has carried the gusts besides
   double blown_way_m_ = 0.0;  ///< and along how much of a way
   double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;
   MonoTime time_{};

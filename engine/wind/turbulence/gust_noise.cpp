@@ -59,13 +59,13 @@ double rise_variance(const noise::VectorTile2& tile) {
 }
 
 /// `along` and `across` of a unit vector, in the world.
-WindVector turned(WindVector unit, double along, double across) noexcept {
+Vector turned(Vector unit, double along, double across) noexcept {
   return {along * unit.u_m_s - across * unit.v_m_s, along * unit.v_m_s + across * unit.u_m_s};
 }
 
 /// An octave of a chain's tiles. Tiles are as large as their waves need: 16 samples for the longest where that is no
 /// more than half the largest edge, else 8.
-noise::NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
+noise::Spec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
   const std::size_t tile = GustNoise::torus_of(octave);
   const double cycles = std::ldexp(kFirstCycles[tile], static_cast<int>(octave - kFirstOctave[tile]));
   constexpr std::size_t kMinSamples = 64;
@@ -78,9 +78,9 @@ noise::NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint6
           .to_cycles = 2.0 * cycles};
 }
 
-noise::NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
+noise::Tile1 way_octave(std::size_t octave, std::uint64_t seed) {
   const double cycles = std::ldexp(1.0, static_cast<int>(octave));
-  noise::NoiseTile1 tile =
+  noise::Tile1 tile =
       noise::make_noise_1d(
           {.size = kWaySamples, .beta = kBeta, .seed = seed, .from_cycles = cycles, .to_cycles = 2.0 * cycles})
           .value();
@@ -88,13 +88,13 @@ noise::NoiseTile1 way_octave(std::size_t octave, std::uint64_t seed) {
   return tile;
 }
 
-noise::NoiseTile2 make_strength(std::uint64_t seed) {
-  noise::NoiseTile2 tile = noise::make_noise_2d({.size = kStrengthSamples,
-                                                 .beta = kBeta,
-                                                 .seed = seed ^ math::stream_id("how strong gusts are"),
-                                                 .from_cycles = kStrengthFromCycles,
-                                                 .to_cycles = kStrengthToCycles})
-                               .value();
+noise::Tile2 make_strength(std::uint64_t seed) {
+  noise::Tile2 tile = noise::make_noise_2d({.size = kStrengthSamples,
+                                            .beta = kBeta,
+                                            .seed = seed ^ math::stream_id("how strong gusts are"),
+                                            .from_cycles = kStrengthFromCycles,
+                                            .to_cycles = kStrengthToCycles})
+                          .value();
   noise::scale_to_unit_reading(tile);
   return tile;
 }
@@ -161,7 +161,7 @@ GustNoise::Tiles GustNoise::make_tiles(const GustNoiseSettings& settings) {
   return tiles;
 }
 
-std::array<std::array<float, 2>, GustNoise::kTori> GustNoise::on_axes(WindVector unit) const noexcept {
+std::array<std::array<float, 2>, GustNoise::kTori> GustNoise::on_axes(Vector unit) const noexcept {
   std::array<std::array<float, 2>, kTori> axes{};
   for (std::size_t torus = 0; torus < kTori; ++torus) {
     const auto [x, z] = tori_[torus].turned(unit.u_m_s, -unit.v_m_s);
@@ -212,8 +212,7 @@ noise::TorusPhase GustNoise::place_on(std::size_t torus, double east_m, double s
 }
 
 /// Octave by octave: a field that has moved by X is read at x - X; its eddies as far turned as they are.
-GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m,
-                                WindVector ahead) const noexcept {
+GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m, Vector ahead) const noexcept {
   Values values{};
   for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
     const std::uint32_t phase = (i < kWayOctaves ? carried.way_first : carried.way_second).phase();
@@ -248,7 +247,7 @@ noise::VectorReading GustNoise::read(const Layer& layer, noise::TorusPhase place
   return noise::read_vector(tiles, at, layer.ahead_x, layer.ahead_z);
 }
 
-WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
+Vector GustNoise::everywhere(const Moment& moment) const noexcept {
   double along = 0.0;
   double across = 0.0;
   for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
@@ -294,7 +293,7 @@ std::size_t GustNoise::layers(const Moment& moment, std::span<Layer, kMaxLayers>
   return count;
 }
 
-WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
+Vector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
   std::array<noise::TorusPhase, kTori> places;
   for (std::size_t torus = 0; torus < kTori; ++torus) places[torus] = place_on(torus, east_m, south_m);
   std::array<Layer, kMaxLayers> all;

@@ -123,21 +123,21 @@ class GustNoise {
   struct Values {
     std::array<float, kOctaves> along, across;
   };
-  Values at(const Carried& carried, double east_m, double south_m, WindVector ahead = {0.0, 1.0}) const noexcept;
+  Values at(const Carried& carried, double east_m, double south_m, Vector ahead = {0.0, 1.0}) const noexcept;
 
   /// The pattern at a moment: how far it has been carried, which way its `along` points, and how strong each octave is
   /// (its standard deviation).
   struct Moment {
     Carried carried;
-    WindVector ahead{0.0, 1.0};  ///< unit vector downwind; `across` is to the left of it
+    Vector ahead{0.0, 1.0};  ///< unit vector downwind; `across` is to the left of it
     std::array<float, kOctaves> along_m_s{}, across_m_s{};
     float gustiness = 0.0F;  ///< how unequal the gusts of places are: of envelope(); 0: all alike
     float fronts = 0.0F;     ///< how much stronger gusts are where longer ones rise than where they fall; 0: as strong
   };
   /// The gusts that all places have alike: the octaves of the way.
-  WindVector everywhere(const Moment& moment) const noexcept;
+  Vector everywhere(const Moment& moment) const noexcept;
   /// The gusts of a place alone: the octaves of the tiles (metres east and south of the middle of the scene).
-  WindVector local(const Moment& moment, double east_m, double south_m) const noexcept;
+  Vector local(const Moment& moment, double east_m, double south_m) const noexcept;
 
   /// By how much the gusts of a place are stronger than usual: exp(g G - g^2), g being the moment's gustiness and G a
   /// noise of variance 1 with waves of 100 to 400 m (at periods of 256 m). Its mean square is 1. Exactly 1 where g is
@@ -176,7 +176,7 @@ class GustNoise {
       return {cosine * east_m + sine * south_m, cosine * south_m - sine * east_m};
     }
   };
-  using Ways = std::array<noise::NoiseTile1, 2 * kWayOctaves>;
+  using Ways = std::array<noise::Tile1, 2 * kWayOctaves>;
   using Tiles = std::array<noise::VectorNoise2, 2 * kTileOctaves>;
 
   static noise::VectorReading read(const Layer& layer, noise::TorusPhase place) noexcept;
@@ -184,7 +184,7 @@ class GustNoise {
   static Ways make_ways(std::uint64_t seed);
   static Tiles make_tiles(const GustNoiseSettings& settings);
   /// A unit vector on the axes of each torus.
-  std::array<std::array<float, 2>, kTori> on_axes(WindVector unit) const noexcept;
+  std::array<std::array<float, 2>, kTori> on_axes(Vector unit) const noexcept;
 
   std::array<double, 2> way_periods_m_;
   std::array<Torus, kTori> tori_;
@@ -194,7 +194,7 @@ class GustNoise {
   bool evolves_;
   Ways ways_along_, ways_across_;  ///< of both chains
   Tiles tiles_;
-  noise::NoiseTile2 strength_;  ///< the envelope's G, on the first torus
+  noise::Tile2 strength_;  ///< the envelope's G, on the first torus
 };
 
 /// How fast eddies turn over in a wind of standard deviation `sigma_m_s` (along it) and integral length scale

@@ -26,7 +26,7 @@ class OctaveFollower {
   static double centre_hz(std::size_t band) noexcept { return std::numbers::sqrt2 * edge_hz(band); }
 
   /// Begins with this value, settled.
-  void begin(WindVector value) noexcept { passed_.fill(value); }
+  void begin(Vector value) noexcept { passed_.fill(value); }
 
   /// How far each low pass goes toward its input within a step: the same for all followers.
   using Parts = std::array<double, kBands + 1>;
@@ -37,12 +37,12 @@ class OctaveFollower {
   }
 
   /// Advances by that step, with `held` as input.
-  void step(WindVector held, const Parts& parts) noexcept {
+  void step(Vector held, const Parts& parts) noexcept {
     for (std::size_t i = 0; i <= kBands; ++i) passed_[i] = passed_[i] + parts[i] * (held - passed_[i]);
   }
 
-  WindVector mean() const noexcept { return passed_[0]; }
-  WindVector band(std::size_t band) const noexcept { return passed_[band + 1] - passed_[band]; }
+  Vector mean() const noexcept { return passed_[0]; }
+  Vector band(std::size_t band) const noexcept { return passed_[band + 1] - passed_[band]; }
 
   /// kLowest_hz over each edge.
   static constexpr std::array<double, kBands + 1> kMinPerEdge = [] {
@@ -83,7 +83,7 @@ class OctaveFollower {
   };
 
  private:
-  std::array<WindVector, kBands + 1> passed_{};  ///< what each low pass lets through
+  std::array<Vector, kBands + 1> passed_{};  ///< what each low pass lets through
 };
 
 }  // namespace yuragi::wind::turbulence

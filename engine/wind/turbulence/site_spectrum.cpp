@@ -16,7 +16,7 @@ constexpr double kExpectedFor_s = 6.0 * 3600.0;
 constexpr double kNothingFor_s = 600.0;
 /// A single half hour of a gusty day may differ by as much.
 constexpr double kMaxLearnt_db = 20.0;
-/// The fastest waves that readings resolve (TurbulenceFit): frequency times interval.
+/// The fastest waves that readings resolve (Fit): frequency times interval.
 constexpr double kResolvedUpTo = 0.37;
 
 }  // namespace

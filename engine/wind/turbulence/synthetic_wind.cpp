@@ -14,7 +14,7 @@ constexpr double kFastSample_s = 0.25;  // frequencies from 1/1024 to 2 Hz
 constexpr double kSlowSample_s = kFastSample_s * std::numbers::phi;
 constexpr double kAcrossToAlong = 0.8;
 
-noise::NoiseTile1 make_tile(std::uint64_t seed) {
+noise::Tile1 make_tile(std::uint64_t seed) {
   auto tile = noise::make_noise_1d(
       {.size = kTileSize, .beta = 5.0 / 3.0, .meaning = noise::BetaMeaning::kTransect, .seed = seed});
   if (!tile) throw std::logic_error("the synthetic wind's noise tile has a size or slope that is not allowed");
@@ -22,7 +22,7 @@ noise::NoiseTile1 make_tile(std::uint64_t seed) {
 }
 
 /// The periodic tile at a place between samples, by the cubic through the four nearest (Catmull and Rom, 1974).
-double sample_smoothly(const noise::NoiseTile1& tile, double position) noexcept {
+double sample_smoothly(const noise::Tile1& tile, double position) noexcept {
   const auto size = static_cast<double>(tile.size());
   const double wrapped = position - size * std::floor(position / size);
   const auto index = static_cast<std::size_t>(wrapped);
@@ -51,7 +51,7 @@ SyntheticWind::SyntheticWind(const SyntheticWindSettings& settings)
       along_noise_{make_tile(4 * settings.seed), make_tile(4 * settings.seed + 1)},
       across_noise_{make_tile(4 * settings.seed + 2), make_tile(4 * settings.seed + 3)} {}
 
-WindVector SyntheticWind::at(double time_s) const noexcept {
+Vector SyntheticWind::at(double time_s) const noexcept {
   const double sigma_m_s = settings_.turbulence_intensity * settings_.mean_speed_m_s;
   const double along_m_s = settings_.mean_speed_m_s + sigma_m_s * along_noise_.at(time_s);
   const double across_m_s = kAcrossToAlong * sigma_m_s * across_noise_.at(time_s);

@@ -25,18 +25,18 @@ class SyntheticWind {
   explicit SyntheticWind(const SyntheticWindSettings& settings);
 
   /// The wind at a time, smooth in it (continuous first derivative). Finite for every finite time.
-  WindVector at(double time_s) const noexcept;
+  Vector at(double time_s) const noexcept;
 
   const SyntheticWindSettings& settings() const noexcept { return settings_; }
 
  private:
   struct Component {
-    noise::NoiseTile1 fast, slow;
+    noise::Tile1 fast, slow;
     double at(double time_s) const noexcept;  ///< unit variance
   };
 
   SyntheticWindSettings settings_;
-  WindVector along_, across_;  ///< unit vectors: downwind, and to the left of it
+  Vector along_, across_;  ///< unit vectors: downwind, and to the left of it
   Component along_noise_, across_noise_;
 };
 

@@ -33,7 +33,7 @@ constexpr double kMinIntensity = 1e-4;
 
 }  // namespace
 
-TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value, WindComponent component)
+Fit::Fit(const Prior& prior, double memory_s, ReadingValue value, WindComponent component)
     : prior_(prior), value_(value), component_(component), squares_(memory_s) {
   make_haar_table();  // now, not on the way
   if (value_ == ReadingValue::kInstant || value_ == ReadingValue::kUnknown) make_sampled_haar_table();
@@ -41,7 +41,7 @@ TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, Read
   turbulence_ = {prior_.intensity, 8.0};
 }
 
-void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
+void Fit::fit(double interval_s, double speed_m_s) noexcept {
   if (!(interval_s > 0.0) || !(speed_m_s > 0.0)) return;
 
   // The variance at each scale, and its weight.
@@ -98,18 +98,18 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
 }
 
 /// Haar's variance of a scale over the variance of the turbulence.
-double TurbulenceFit::shape(std::size_t scale, double interval_over_time_scale) const noexcept {
+double Fit::shape(std::size_t scale, double interval_over_time_scale) const noexcept {
   return value_ == ReadingValue::kInstant
              ? von_karman_sampled_haar_variance(scale, interval_over_time_scale, component_)
              : von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)), component_);
 }
 
-double TurbulenceFit::expected(double tau_s) const noexcept {
+double Fit::expected(double tau_s) const noexcept {
   return square(turbulence_.intensity) * von_karman_haar_variance(tau_s / turbulence_.time_scale_s, component_) *
          correction(kStrongestAt / tau_s);
 }
 
-double TurbulenceFit::correction(double frequency_hz) const noexcept {
+double Fit::correction(double frequency_hz) const noexcept {
   if (scales_used_ == 0 || !(frequency_hz > 0.0)) return 1.0;
   // Scale s is about the frequency 0.37 / (interval 2^s): between two of them by their logarithms, outside the nearest.
   const double place = std::log2(kStrongestAt / (interval_s_ * frequency_hz));

@@ -16,7 +16,7 @@ struct Turbulence {
 };
 
 /// The prior of a fit, which it keeps to where there are few readings.
-struct TurbulencePrior {
+struct Prior {
   double intensity = 0.2;       ///< standard deviation over the mean speed
   double length_m = 57.0;       ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
   double length_weight = 10.0;  ///< the length counts as so many independent observations
@@ -34,12 +34,12 @@ struct TurbulencePrior {
 /// change of the wind. Source: Allan 1966, Statistics of atomic frequency standards (the variances); von Karman 1948.
 ///
 /// Thread-safe: no. Realtime-safe after construction: yes.
-class TurbulenceFit {
+class Fit {
  public:
   static constexpr std::size_t kScales = HaarSquares::kScales;
 
-  TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean,
-                WindComponent component = WindComponent::kAlong);
+  Fit(const Prior& prior, double memory_s, ReadingValue value = ReadingValue::kMean,
+      WindComponent component = WindComponent::kAlong);
 
   /// HaarSquares::add() of a difference over the mean speed.
   void add(std::size_t scale, double difference, double weight = 1.0) noexcept {
@@ -71,7 +71,7 @@ class TurbulenceFit {
  private:
   double shape(std::size_t scale, double interval_over_time_scale) const noexcept;
 
-  TurbulencePrior prior_;
+  Prior prior_;
   ReadingValue value_;
   WindComponent component_;
   HaarSquares squares_;

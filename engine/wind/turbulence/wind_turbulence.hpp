@@ -27,9 +27,9 @@ namespace yuragi::wind::turbulence {
 class WindTurbulence {
  public:
   /// `prior`: along the wind; across it, the intensity is kAcrossPerAlong of it. Of kUnknown, the readings are judged.
-  WindTurbulence(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
+  WindTurbulence(const Prior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
 
-  /// TurbulenceFit::take_as() of both.
+  /// Fit::take_as() of both.
   void take_as(ReadingValue value) noexcept {
     along_.take_as(value);
     across_.take_as(value);
@@ -39,12 +39,12 @@ class WindTurbulence {
   /// After a gap: what comes next is not compared with what was.
   void break_off() noexcept { history_size_ = 0; }
   /// The next reading, in a wind that blows toward the unit vector `ahead` with a mean of speed_m_s (above 0).
-  void take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept;
+  void take(Vector wind, Vector ahead, double speed_m_s, bool has_across) noexcept;
   /// Fits both, for readings every interval_s, and judges what the readings are.
   void fit(double interval_s, double speed_m_s) noexcept;
 
-  const TurbulenceFit& along() const noexcept { return along_; }
-  const TurbulenceFit& across() const noexcept { return across_; }
+  const Fit& along() const noexcept { return along_; }
+  const Fit& across() const noexcept { return across_; }
 
   /// ValueVerdict::verdict(); kUnknown if the readings are not judged.
   ReadingValue verdict() const noexcept { return verdict_ ? verdict_->verdict() : ReadingValue::kUnknown; }
@@ -52,9 +52,9 @@ class WindTurbulence {
  private:
   void begin_turn() noexcept;
 
-  TurbulenceFit along_, across_;
+  Fit along_, across_;
   std::optional<ValueVerdict> verdict_;
-  std::vector<WindVector> sums_;  ///< a ring: of all readings up to each of the last ones
+  std::vector<Vector> sums_;      ///< a ring: of all readings up to each of the last ones
   std::size_t last_ = 0;          ///< the last reading's place in it
   std::size_t history_size_ = 0;  ///< readings without a gap up to the last
 };

@@ -48,16 +48,16 @@ class Judging {
       now_.mono += 500ms;
       now_.utc += 500ms;
       if (makes_frames) ++frames_;
-      for (const AlertNews& news : judge.judge(status, frames_, now_)) {
+      for (const News& news : judge.judge(status, frames_, now_)) {
         told.push_back((news.has_begun ? "" : "- ") + news.message);
         last = news;
       }
     }
   }
 
-  AlertJudge judge;
+  Judge judge;
   std::vector<std::string> told;
-  AlertNews last;
+  News last;
 
  private:
   Instant now_{};
@@ -128,7 +128,7 @@ TEST(AlertJudge, CutsLongSentences) {
   wire::Sensors status;
   status.sensors = {sensor("roof", SensorState::kStale, std::string(100'000, 'x'))};
   judging.hold(status, 1h);
-  EXPECT_EQ(judging.last.message.size(), AlertJudge::kMaxMessage_bytes);
+  EXPECT_EQ(judging.last.message.size(), Judge::kMaxMessage_bytes);
 }
 
 TEST(AlertJudge, TellsEachSensorByItself) {

@@ -21,10 +21,10 @@ using testing::Not;
 using testing::SizeIs;
 
 const UtcTime kTime{1'700'000'000s};
-const AlertOn kStorm{.alert = "storm \"a\"", .when = AlertCondition::kWindAbove, .begun = kTime};
-const AlertOn kRoof{.alert = "silent", .when = AlertCondition::kSensorSilent, .subject = "roof", .begun = kTime};
+const Active kStorm{.alert = "storm \"a\"", .when = AlertCondition::kWindAbove, .begun = kTime};
+const Active kRoof{.alert = "silent", .when = AlertCondition::kSensorSilent, .subject = "roof", .begun = kTime};
 
-AlertNews storm(bool has_begun) {
+News storm(bool has_begun) {
   return {.alert = kStorm.alert,
           .has_begun = has_begun,
           .message = "the wind\nis strong",
@@ -38,48 +38,48 @@ std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-class Ledger : public testing::Test {
+class LedgerTest : public testing::Test {
  protected:
   test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_.path() / "alerts.json";
 };
 
-TEST_F(Ledger, KeepsWhatIsOnAndWhatIsUndelivered) {
+TEST_F(LedgerTest, KeepsWhatIsOnAndWhatIsUndelivered) {
   {
-    AlertLedger ledger(file_);
+    Ledger ledger(file_);
     EXPECT_THAT(ledger.record().on, IsEmpty());
     ledger.set({kStorm, kRoof}, {storm(true)});
     ledger.set({kRoof}, {storm(false)});
-    ledger.settle(AlertWay::kCommand, storm(true));
+    ledger.settle(Channel::kCommand, storm(true));
   }
   EXPECT_THAT(content_of(file_), Not(HasSubstr("secret")));
-  const AlertRecord record = AlertLedger(file_).record();
+  const Record record = Ledger(file_).record();
   EXPECT_THAT(record.on, testing::ElementsAre(kRoof));
   ASSERT_THAT(record.undelivered, SizeIs(3));
-  EXPECT_EQ(record.undelivered[0].way, AlertWay::kWebhook);
+  EXPECT_EQ(record.undelivered[0].way, Channel::kWebhook);
   EXPECT_TRUE(record.undelivered[0].news.has_begun);
   EXPECT_EQ(record.undelivered[0].news.message, "the wind\nis strong");
   EXPECT_EQ(record.undelivered[0].news.time, kTime);
-  EXPECT_EQ(record.undelivered[1].way, AlertWay::kCommand);
+  EXPECT_EQ(record.undelivered[1].way, Channel::kCommand);
   EXPECT_FALSE(record.undelivered[1].news.has_begun);
 }
 
-TEST_F(Ledger, LeavesNoFileWhenAllIsTold) {
+TEST_F(LedgerTest, LeavesNoFileWhenAllIsTold) {
   {
-    AlertLedger ledger(file_);
+    Ledger ledger(file_);
     ledger.set({}, {storm(true)});
   }
   EXPECT_TRUE(exists(file_));
   {
-    AlertLedger ledger(file_);
-    ledger.settle(AlertWay::kCommand, storm(true));
-    ledger.settle(AlertWay::kWebhook, storm(true));
+    Ledger ledger(file_);
+    ledger.settle(Channel::kCommand, storm(true));
+    ledger.settle(Channel::kWebhook, storm(true));
   }
   EXPECT_FALSE(exists(file_));
 }
 
-TEST_F(Ledger, ADamagedFileIsIgnoredAndOverwritten) {
-  const std::string good = text_of({.on = {kRoof}, .undelivered = {{AlertWay::kCommand, storm(true)}}});
+TEST_F(LedgerTest, ADamagedFileIsIgnoredAndOverwritten) {
+  const std::string good = text_of({.on = {kRoof}, .undelivered = {{Channel::kCommand, storm(true)}}});
   ASSERT_TRUE(parse_alert_record(good));
   // Cut anywhere, or with any byte another one, it is invalid or another record; it never ends the program.
   for (std::size_t i = 0; i + 2 < good.size(); ++i) {
@@ -100,18 +100,18 @@ TEST_F(Ledger, ADamagedFileIsIgnoredAndOverwritten) {
             "undelivered": []})"}) {
     EXPECT_FALSE(parse_alert_record(text)) << text;
     std::ofstream(file_) << text;
-    AlertLedger ledger(file_);
+    Ledger ledger(file_);
     EXPECT_THAT(ledger.record().on, IsEmpty());
     ledger.set({kRoof}, {});
   }
-  EXPECT_THAT(AlertLedger(file_).record().on, SizeIs(1));
+  EXPECT_THAT(Ledger(file_).record().on, SizeIs(1));
 }
 
-TEST_F(Ledger, AFolderInItsPlaceOrNoneAtAllCostsOnlyTheSaving) {
+TEST_F(LedgerTest, AFolderInItsPlaceOrNoneAtAllCostsOnlyTheSaving) {
   create_directory(file_);
-  AlertLedger(file_).set({kRoof}, {});
+  Ledger(file_).set({kRoof}, {});
   EXPECT_TRUE(is_directory(file_));
-  AlertLedger ledger(folder_.path() / "nowhere" / "alerts.json");
+  Ledger ledger(folder_.path() / "nowhere" / "alerts.json");
   ledger.set({kRoof}, {});
   EXPECT_THAT(ledger.record().on, SizeIs(1));
 }

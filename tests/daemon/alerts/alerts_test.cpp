@@ -58,15 +58,15 @@ TEST_F(AlertsTest, ACommandThatHangsDelaysNoOtherAlert) {
 }
 
 TEST_F(AlertsTest, DeliversAfterARestartWhatTheConfigurationStillHas) {
-  const AlertNews known{.alert = "known", .has_begun = true, .message = "wind", .command = "an older command"};
-  AlertNews gone = known;
+  const News known{.alert = "known", .has_begun = true, .message = "wind", .command = "an older command"};
+  News gone = known;
   gone.alert = "gone";
-  AlertLedger(record_).set({}, {gone, known});
+  Ledger(record_).set({}, {gone, known});
   {
     Alerts alerts({storm("known", tell())}, "host", record_, kNow);
     EXPECT_TRUE(is_told());
   }
-  for (const auto& [way, news] : AlertLedger(record_).record().undelivered) EXPECT_EQ(news.alert, "known");
+  for (const auto& [way, news] : Ledger(record_).record().undelivered) EXPECT_EQ(news.alert, "known");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr auto kHang = 60s;  // so long waits only who waits for something that hangs
 
-AlertNews news_of(std::string alert, bool has_begun = true) {
+News news_of(std::string alert, bool has_begun = true) {
   return {.alert = std::move(alert), .has_begun = has_begun};
 }
 
@@ -42,24 +42,24 @@ class Log {
   std::vector<std::string> lines_;
 };
 
-std::string text_of(const AlertNews& news) {
+std::string text_of(const News& news) {
   return news.alert + (news.has_begun ? " began" : " ended");
 }
 
 DeliveryQueue::Calls failing(Log& log) {
-  return {.deliver = [](const AlertNews&, const std::stop_token&) -> Result<void, Failure> { return Failure{"no"}; },
+  return {.deliver = [](const News&, const std::stop_token&) -> Result<void, Failure> { return Failure{"no"}; },
           .report = [&log](std::string_view, std::string_view what) { log.add(std::string(what)); },
-          .settle = [&log](const AlertNews& news) { log.add("settled: " + news.alert); }};
+          .settle = [&log](const News& news) { log.add("settled: " + news.alert); }};
 }
 
 TEST(DeliveryQueue, DeliversInOrder) {
   Log log;
-  DeliveryQueue queue({.deliver = [&](const AlertNews& news, const std::stop_token&) -> Result<void, Failure> {
+  DeliveryQueue queue({.deliver = [&](const News& news, const std::stop_token&) -> Result<void, Failure> {
                          log.add(text_of(news));
                          return {};
                        },
                        .report = [](auto, auto) {},
-                       .settle = [&](const AlertNews& news) { log.add("settled: " + text_of(news)); }},
+                       .settle = [&](const News& news) { log.add("settled: " + text_of(news)); }},
                       {});
   queue.push(news_of("a"));
   queue.push(news_of("a", false));
@@ -70,7 +70,7 @@ TEST(DeliveryQueue, TriesAgainAndLetsNoEndOvertakeItsBeginning) {
   Log log;
   int failures = 3;
   DeliveryQueue queue(
-      {.deliver = [&](const AlertNews& news, const std::stop_token&) -> Result<void, Failure> {
+      {.deliver = [&](const News& news, const std::stop_token&) -> Result<void, Failure> {
          if (failures-- > 0) return Failure{"nobody is there"};
          log.add(text_of(news));
          return {};
@@ -96,7 +96,7 @@ TEST(DeliveryQueue, TriesOnceWhereThatIsAsked) {
 TEST(DeliveryQueue, AnExceptionIsAFailure) {
   Log log;
   auto calls = failing(log);
-  calls.deliver = [](const AlertNews&, const std::stop_token&) -> Result<void, Failure> {
+  calls.deliver = [](const News&, const std::stop_token&) -> Result<void, Failure> {
     throw std::runtime_error("no memory");
   };
   DeliveryQueue queue(calls, {});
@@ -110,7 +110,7 @@ TEST(DeliveryQueue, HoldsOnlySoMany) {
   std::promise<void> may_go_on;
   bool is_first = true;
   auto calls = failing(log);
-  calls.deliver = [&](const AlertNews& news, const std::stop_token&) -> Result<void, Failure> {
+  calls.deliver = [&](const News& news, const std::stop_token&) -> Result<void, Failure> {
     if (std::exchange(is_first, false)) {
       is_busy.set_value();
       may_go_on.get_future().wait();

@@ -41,13 +41,13 @@ TEST(ShellCommand, IsToldByItsEnvironment) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "told";
   // No shell takes this apart: it is data.
-  const AlertNews news{.alert = "a $(touch x) \"b\"",
-                       .has_begun = true,
-                       .message = "sensor `roof`; is\nsilent",
-                       .command =
-                           "printf '%s|%s|%s' \"$YURAGI_ALERT\" \"$YURAGI_ALERT_STATE\" "
-                           "\"$YURAGI_ALERT_MESSAGE\" > " +
-                           file.string()};
+  const News news{.alert = "a $(touch x) \"b\"",
+                  .has_begun = true,
+                  .message = "sensor `roof`; is\nsilent",
+                  .command =
+                      "printf '%s|%s|%s' \"$YURAGI_ALERT\" \"$YURAGI_ALERT_STATE\" "
+                      "\"$YURAGI_ALERT_MESSAGE\" > " +
+                      file.string()};
   std::string output;
   ASSERT_TRUE(run_command(news, kForever, {}, output).has_value());
   EXPECT_EQ(output, "");

@@ -20,11 +20,11 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-const AlertNews kNews{
+const News kNews{
     .alert = "roof", .has_begun = true, .message = "sensor \"roof\" is stale", .time = UtcTime(1'782'000'000s + 250ms)};
 
-AlertNews news_for(const std::string& webhook) {
-  AlertNews news = kNews;
+News news_for(const std::string& webhook) {
+  News news = kNews;
   news.webhook = Secret(webhook);
   return news;
 }
@@ -56,7 +56,7 @@ TEST(Webhook, BodyIsJson) {
   const auto body = nlohmann::json::parse(webhook_body(kNews, "wall-3"));
   EXPECT_EQ(body, nlohmann::json::parse(R"({"alert": "roof", "state": "began", "message": "sensor \"roof\" is stale",
       "host": "wall-3", "time": "2026-06-21T00:00:00Z", "text": "Yuragi on wall-3: sensor \"roof\" is stale"})"));
-  AlertNews hostile = kNews;
+  News hostile = kNews;
   hostile.has_begun = false;
   hostile.message = "\xff\x01";
   EXPECT_EQ(nlohmann::json::parse(webhook_body(hostile, "wall-3"))["state"], "ended");

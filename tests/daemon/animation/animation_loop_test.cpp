@@ -39,7 +39,7 @@ class AnimationLoopTest : public ::testing::Test {
 
   /// Waits for the next frame as the I/O thread does, and decodes it.
   wire::Frame next_frame() { return next_frame(loop_); }
-  wire::Frame next_frame(AnimationLoop& loop) {
+  wire::Frame next_frame(Loop& loop) {
     while (true) {
       pollfd ready{.fd = loop.frame_ready_fd(), .events = POLLIN, .revents = 0};
       if (poll(&ready, 1, 60'000) != 1) throw std::runtime_error("no frame in a minute");
@@ -62,15 +62,15 @@ class AnimationLoopTest : public ::testing::Test {
   sensing::SystemClock clock_;
   Latest<wind::ground::DrivingWind> wind_;
   Animation animation_{settings::default_config(), sensing::make_gust_noise(settings::default_config())};
-  AnimationLoop loop_{animation_, wind_, clock_, 240.0};
+  Loop loop_{animation_, wind_, clock_, 240.0};
   std::uint64_t generation_ = 0;  // of the frame that was taken last
   wire::Scenes scenes_;           // that were announced last
 };
 
 TEST_F(AnimationLoopTest, MakesFrameAfterFrameThatShowTheNewestWind) {
-  wind::WindState blowing;
+  wind::State blowing;
   blowing.wind = {7.0, 0.0};
-  blowing.source = wind::WindSource::kLive;
+  blowing.source = wind::Source::kLive;
   wind_.publish({blowing, blowing.wind});
   loop_.start();
 
@@ -184,7 +184,7 @@ TEST_F(AnimationLoopTest, ScenesAreExchangedHundredsOfTimes) {
   std::mt19937 random(7);
   settings::Config config = random_config(random, 5);
   Animation animation(config, sensing::make_gust_noise(config));
-  AnimationLoop loop(animation, wind_, clock_, 4000.0);
+  Loop loop(animation, wind_, clock_, 4000.0);
   SceneDirector director(config, [&loop](const SceneCue& cue) { return loop.cue(cue); });
   SceneExchange exchange(animation, loop, director);
   scenes_ = animation.describe();
@@ -247,7 +247,7 @@ TEST_F(AnimationLoopTest, CountsItsTicksAndHowLateTheyWere) {
 TEST_F(AnimationLoopTest, SaysWhyItHasEndedByItselfAndKeepsTheLastFrame) {
   const settings::Config config = config_with_failing_scene();
   Animation animation(config, sensing::make_gust_noise(config));
-  AnimationLoop loop(animation, wind_, clock_, 240.0);
+  Loop loop(animation, wind_, clock_, 240.0);
   loop.start();
   std::uint64_t last_sequence = 0;
   while (!loop.failure()) {

@@ -17,7 +17,7 @@ namespace {
 constexpr double kTick_s = 1.0 / 60.0;
 
 /// A wind that nobody measures: the same everywhere.
-wind::ground::DrivingWind everywhere(wind::WindVector wind) {
+wind::ground::DrivingWind everywhere(wind::Vector wind) {
   return {.state = {.wind = wind}, .ground = wind};
 }
 const wind::ground::DrivingWind kBreeze = everywhere({5.0, 1.0});

@@ -72,7 +72,7 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
   std::uniform_real_distribution<double> speed(0.0, wind::kMaxPlausibleSpeed_m_s);
   std::uniform_real_distribution<double> direction(0.0, 360.0);
   for (int session = 0; session < 2; ++session) {
-    auto writer = drivers::windlog::WindlogWriter::open(path("a.windlog"));
+    auto writer = drivers::windlog::Writer::open(path("a.windlog"));
     ASSERT_TRUE(writer);
     ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
     const auto mast = writer->add_sensor("mast, \"north\"", "modbus", "");
@@ -80,7 +80,7 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
     Nanoseconds mono(random() % 1'000'000'000);
     for (int i = 0; i < 500; ++i) {
       mono += Nanoseconds(random() % 3'000'000'000);
-      wind::WindReading reading;
+      wind::Reading reading;
       reading.time.mono = MonoTime(mono);
       reading.time.utc = UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)) + std::chrono::hours(session) + mono;
       if (i > 250) reading.time.utc -= std::chrono::seconds(40);
@@ -99,8 +99,8 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
 
   const auto a = test::read_all(path("a.windlog"));
   const auto b = test::read_all(path("b.windlog"));
-  const auto a_reader = drivers::windlog::WindlogReader::open(path("a.windlog"));
-  const auto b_reader = drivers::windlog::WindlogReader::open(path("b.windlog"));
+  const auto a_reader = drivers::windlog::Reader::open(path("a.windlog"));
+  const auto b_reader = drivers::windlog::Reader::open(path("b.windlog"));
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].log_time, b[i].log_time);
@@ -118,7 +118,7 @@ TEST_F(CsvCommands, ExportThenImportGivesTheSameReadings) {
 }
 
 TEST_F(CsvCommands, ExportWritesWhatItSays) {
-  wind::WindReading reading = test::reading_at(100, 6.1);
+  wind::Reading reading = test::reading_at(100, 6.1);
   reading.direction_deg = 187.5;
   test::write_session(path("a.windlog"), {test::reading_at(0, 0.1), reading});
   const Outcome outcome = yuragi({"export", path("a.windlog"), "-o", "-"});
@@ -164,7 +164,7 @@ TEST_F(CsvCommands, ExportBeginsSoLongBeforeTheEnd) {
 }
 
 TEST_F(CsvCommands, ExportWritesMeansOfBlocks) {
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   const auto add = [&readings](std::int64_t ms, double speed_m_s, std::optional<double> direction_deg,
                                std::optional<double> gust_m_s = std::nullopt) {
     readings.push_back(test::reading_at(ms, speed_m_s));
@@ -191,7 +191,7 @@ TEST_F(CsvCommands, ExportWritesMeansOfBlocks) {
 }
 
 TEST_F(CsvCommands, AClockThatLeaptByDecadesIsNoTableOfEmptyRows) {
-  std::vector<wind::WindReading> readings = {test::reading_at(0, 2.0)};
+  std::vector<wind::Reading> readings = {test::reading_at(0, 2.0)};
   test::write_session(path("a.windlog"), readings);
   readings[0].time.utc += std::chrono::hours(24 * 365 * 31);
   test::write_session(path("a.windlog"), readings);
@@ -202,7 +202,7 @@ TEST_F(CsvCommands, AClockThatLeaptByDecadesIsNoTableOfEmptyRows) {
 }
 
 TEST_F(CsvCommands, ExportCopiesALiveRecordingAsOneFile) {
-  auto writer = drivers::windlog::WindlogWriter::open(path("live.windlog"));
+  auto writer = drivers::windlog::Writer::open(path("live.windlog"));
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "", "");
   ASSERT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
@@ -234,7 +234,7 @@ TEST_F(CsvCommands, RefuseToOverwriteUnlessForced) {
 
 TEST_F(CsvCommands, RefuseToOverwriteARecordingThatIsBeingWritten) {
   write("a.csv", "time,speed\n0,1\n");
-  auto writer = drivers::windlog::WindlogWriter::open(path("live.windlog"));
+  auto writer = drivers::windlog::Writer::open(path("live.windlog"));
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   ASSERT_TRUE(writer->commit());
   const Outcome outcome = yuragi({"import", path("a.csv"), "-o", path("live.windlog"), "--force"});
@@ -249,7 +249,7 @@ TEST_F(CsvCommands, ImportTellsTheColumnsAndWhatItLeftOut) {
   EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east; by its name)"));
   EXPECT_THAT(outcome.output, HasSubstr("2 readings of 3 rows, 1 left out"));
   EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: not a number in u: \"x\""));
-  EXPECT_EQ(drivers::windlog::WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
+  EXPECT_EQ(drivers::windlog::Reader::open(path("a.windlog"))->sensors()[0].name, "sonic");
 }
 
 TEST_F(CsvCommands, ImportThatFailsLeavesNothing) {

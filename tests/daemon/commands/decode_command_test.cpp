@@ -163,7 +163,7 @@ TEST_F(DecodeCommand, HasTheDefaultsAndLimitsOfTheDriverOfCounters) {
 }
 
 /// What the driver itself makes of a file with one message.
-std::vector<wind::WindReading> of_driver(const std::string& format, const std::string& message) {
+std::vector<wind::Reading> of_driver(const std::string& format, const std::string& message) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "a.log", std::ios::binary) << message;
   const auto values = ParameterValues::resolve(driver_named("nmea").parameters, {{"format", format},

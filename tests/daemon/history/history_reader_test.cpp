@@ -12,7 +12,7 @@ namespace yuragi::daemon::history {
 namespace {
 
 /// What ask() replies, however long it takes.
-Result<std::string, Failure> asked(HistoryReader& reader, unsigned hours) {
+Result<std::string, Failure> asked(Reader& reader, unsigned hours) {
   std::promise<Result<std::string, Failure>> reply;
   auto replied = reply.get_future();
   reader.ask(hours, [&reply](const Result<std::string, Failure>& result) { reply.set_value(result); });
@@ -21,7 +21,7 @@ Result<std::string, Failure> asked(HistoryReader& reader, unsigned hours) {
 
 TEST(HistoryReader, WhatWasReadIsKept_ForThoseHours) {
   std::atomic<int> readings = 0;
-  HistoryReader reader(
+  Reader reader(
       [&readings](unsigned hours, const std::stop_token&) -> Result<std::string, Failure> {
         ++readings;
         return {boost::system::in_place_value, std::to_string(hours)};
@@ -36,7 +36,7 @@ TEST(HistoryReader, WhatWasReadIsKept_ForThoseHours) {
 
 TEST(HistoryReader, WhatIsTooOldIsReadAgain_AndFailuresAreNotKept) {
   std::atomic<int> readings = 0;
-  HistoryReader reader(
+  Reader reader(
       [&readings](unsigned, const std::stop_token&) -> Result<std::string, Failure> {
         if (++readings == 1) throw std::runtime_error("no memory");
         return {boost::system::in_place_value, std::to_string(readings.load())};
@@ -51,7 +51,7 @@ TEST(HistoryReader, OneAtATime_NobodyWaits_AndItsEndStopsTheReading) {
   std::promise<void> begun;
   std::promise<Result<std::string, Failure>> first;
   {
-    HistoryReader reader([&begun](unsigned, const std::stop_token& stop) -> Result<std::string, Failure> {
+    Reader reader([&begun](unsigned, const std::stop_token& stop) -> Result<std::string, Failure> {
       begun.set_value();
       while (!stop.stop_requested()) std::this_thread::yield();
       return Failure{"stopped"};

@@ -15,8 +15,8 @@ constexpr std::int64_t kMinute_ms = 60'000;
 UtcTime after_minutes(std::int64_t minutes) {
   return UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms + minutes * kMinute_ms));
 }
-wind::WindReading reading_from(std::int64_t mono_ms, double speed_m_s, double direction_deg) {
-  wind::WindReading reading = test::reading_at(mono_ms, speed_m_s);
+wind::Reading reading_from(std::int64_t mono_ms, double speed_m_s, double direction_deg) {
+  wind::Reading reading = test::reading_at(mono_ms, speed_m_s);
   reading.direction_deg = direction_deg;
   return reading;
 }
@@ -32,7 +32,7 @@ TEST(WindHistory, StepsHaveLeastMeanAndLargest_AndGapsAreGaps) {
   EXPECT_EQ(history->step_count, 361U);
   EXPECT_EQ(history->begin_s, test::kSampleUtc_ms / 1000);
   ASSERT_EQ(history->sensors.size(), 1U);
-  const std::vector<HistoryStep>& steps = history->sensors[0].steps;
+  const std::vector<Step>& steps = history->sensors[0].steps;
   EXPECT_EQ(history->sensors[0].name, "mast");
   EXPECT_EQ(steps[0].min_m_s, 2.0);
   EXPECT_EQ(steps[0].mean_m_s(), 3.0);
@@ -55,7 +55,7 @@ TEST(WindHistory, OnlyTheLastHours_InFewSteps) {
     ASSERT_TRUE(history);
     EXPECT_LE(history->step_count, static_cast<std::size_t>(kMaxSteps) + 1) << hours;
     std::uint64_t readings = 0;
-    for (const HistoryStep& step : history->sensors.at(0).steps) readings += step.readings;
+    for (const Step& step : history->sensors.at(0).steps) readings += step.readings;
     EXPECT_EQ(readings, hours <= 2 ? 1U : 2U) << hours;
   }
   const auto later = read_wind_history(folder / "a.windlog", after_minutes(1000), 1);
@@ -66,7 +66,7 @@ TEST(WindHistory, OnlyTheLastHours_InFewSteps) {
 TEST(WindHistory, ASensorOfTwoSessionsIsOne_AndWhatIsBeingWrittenIsRead) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", {test::reading_at(1000, 2.0)});
-  auto writer = drivers::windlog::WindlogWriter::open(folder / "a.windlog");
+  auto writer = drivers::windlog::Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer);
   ASSERT_TRUE(writer->begin_session({test::at_ms(20'000, test::kSampleUtc_ms + 20'000), "yuragi test", ""}));
   for (const char* const name : {"mast", "roof"}) {

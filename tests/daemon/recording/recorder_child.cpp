@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
       argv[1], {.started = {}, .software = "yuragi test", .configuration = "", .sensors = {{"mast", "", ""}}});
 
   for (std::int64_t i = 0;; ++i) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time.mono += std::chrono::milliseconds(5 * i);
     reading.speed_m_s = 0.001 * static_cast<double>(i % 100'000);
     if (i % 200 == 0) {

@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kHour_ms = 3'600'000;
 
-RecordingInfo info_of(std::vector<RecordedSensor> sensors, Instant started = test::at_ms(0, test::kSampleUtc_ms)) {
+Info info_of(std::vector<RecordedSensor> sensors, Instant started = test::at_ms(0, test::kSampleUtc_ms)) {
   return {.started = started,
           .software = "yuragi test",
           .configuration = "[wind]\nspeed = 4\n",
@@ -51,7 +51,7 @@ TEST(Recorder, WritesEverythingByItsEndAndLeavesOneFile) {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "modbus", "host = \"sim\""}, {"roof", "synthetic", ""}}));
     for (std::size_t i = 0; i < readings.size(); ++i) EXPECT_TRUE(recorder.push(i % 2, readings[i]));
   }
-  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
+  auto reader = drivers::windlog::Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   EXPECT_EQ(reader->configuration(reader->sessions()[0].id).value(), "[wind]\nspeed = 4\n");
   const auto logged = test::read_all(folder / "a.windlog");
@@ -73,7 +73,7 @@ wind::StationQuantities temperature_at(std::int64_t mono_ms, double air_temperat
 /// Nothing where the recording cannot be read now: a file of it may be renamed meanwhile.
 std::optional<std::vector<double>> temperatures_now_in(const std::filesystem::path& file) {
   std::vector<double> all;
-  auto reader = drivers::windlog::WindlogReader::open(file);
+  auto reader = drivers::windlog::Reader::open(file);
   if (!reader || !reader->each_quantities(Nanoseconds{0}, Nanoseconds::max(),
                                           [&](const drivers::windlog::LoggedQuantities& logged) {
                                             all.push_back(logged.quantities.air_temperature_c.value_or(-1.0));
@@ -411,7 +411,7 @@ TEST(Recorder, AppendsASessionAtEachStart) {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
     recorder.push(0, test::reading_at(1000 * std::int64_t{run}, 1.0));
   }
-  EXPECT_EQ(drivers::windlog::WindlogReader::open(folder / "a.windlog")->sessions().size(), 3U);
+  EXPECT_EQ(drivers::windlog::Reader::open(folder / "a.windlog")->sessions().size(), 3U);
 }
 
 TEST(Recorder, BeginsASessionWithAnotherConfigurationBetweenTwoReadings) {
@@ -419,7 +419,7 @@ TEST(Recorder, BeginsASessionWithAnotherConfigurationBetweenTwoReadings) {
   const auto readings = test::numbered_readings(3000);
   {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}, {"roof", "", ""}}));
-    RecordingInfo next = info_of({{"mast", "", ""}, {"roof", "", "rate = 4"}});
+    Info next = info_of({{"mast", "", ""}, {"roof", "", "rate = 4"}});
     for (std::size_t i = 0; i < readings.size(); ++i) {
       if (i == 1000) {
         next.configuration = "[wind]\nspeed = 5\n";
@@ -437,7 +437,7 @@ TEST(Recorder, BeginsASessionWithAnotherConfigurationBetweenTwoReadings) {
     }
     recorder.begin_session(next, {});  // and one that gets no reading
   }
-  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
+  auto reader = drivers::windlog::Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   ASSERT_EQ(reader->sessions().size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -566,7 +566,7 @@ TEST(Recorder, CountsWhatADiskThatStaysFullTakesAway) {
   {
     Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
                       [&](std::string_view report) { last_report = report; });
-    for (const wind::WindReading& reading : test::numbered_readings(10'000)) recorder.push(0, reading);
+    for (const wind::Reading& reading : test::numbered_readings(10'000)) recorder.push(0, reading);
   }
   EXPECT_NE(last_report.find("10000 readings that could not be written"), std::string::npos) << last_report;
   EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 0U);
@@ -576,7 +576,7 @@ TEST(Recorder, ThatCannotWriteForLongHoldsABoundedNumberAndRefusesTheRest) {
   const test::TemporaryFolder folder;
   const test::FileSizeLimit full(150'000);
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
-  const wind::WindReading reading = test::reading_at(1, 1.0);
+  const wind::Reading reading = test::reading_at(1, 1.0);
   std::uint64_t refused = 0;
   std::uint64_t pushed = 0;
   for (; refused < 1000; ++pushed) {
@@ -779,7 +779,7 @@ class DailyRecorder {
             folder / "synchronized") {}
 
   void record(Nanoseconds at, std::chrono::hours ahead = {}) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time = time_of(at, ahead);
     reading.speed_m_s = 1.0;
     EXPECT_TRUE(recorder_.push(0, reading));
@@ -995,7 +995,7 @@ TEST(Recorder, CompletesAFileOnlyWhereNobodyOfItsProcessIsAboutToOpenIt) {
 /// A recording that a killed process left, with its newest reading beside it.
 void leave_unclosed(const std::filesystem::path& file) {
   const test::TemporaryFolder folder;
-  auto writer = drivers::windlog::WindlogWriter::open(folder / "b.windlog").value();
+  auto writer = drivers::windlog::Writer::open(folder / "b.windlog").value();
   ASSERT_TRUE(writer.begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
   const auto sensor = writer.add_sensor("mast", "", "").value();
   ASSERT_TRUE(writer.append(sensor, test::reading_at(1000, 1.0)));
@@ -1037,7 +1037,7 @@ TEST(Recorder, ACopyOfTheFileAloneIsARecordingFromTheBeginningOn) {
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {},
                     {.commit_every = std::chrono::milliseconds(1)});
   std::filesystem::copy_file(folder / "a.windlog", folder / "begin.windlog");
-  EXPECT_EQ(drivers::windlog::WindlogReader::open(folder / "begin.windlog")->sensors().size(), 1U);
+  EXPECT_EQ(drivers::windlog::Reader::open(folder / "begin.windlog")->sensors().size(), 1U);
   for (int i = 1; i <= 1 + RecorderWorker::kCommitsPerCheckpoint; ++i) {
     recorder.push(0, test::reading_at(i, 1.0));
     wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });

@@ -23,10 +23,10 @@ std::atomic<bool> is_sending{false};
 
 class WilfulSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     const Instant now = clock.now();
     if (is_sending && now.mono - last_ >= 100ms) {
-      wind::WindReading reading;
+      wind::Reading reading;
       reading.time = now;
       reading.speed_m_s = 12.0;
       reading.direction_deg = 270.0;
@@ -52,7 +52,7 @@ class FallbackRecordingTest : public ::testing::Test {
  protected:
   FallbackRecordingTest() {
     is_sending = false;
-    std::vector<wind::WindReading> readings;
+    std::vector<wind::Reading> readings;
     readings.reserve(1500);
     for (std::int64_t i = 0; i < 1500; ++i) {
       readings.push_back(test::reading_at(20 * i, 4.0));
@@ -77,7 +77,7 @@ class FallbackRecordingTest : public ::testing::Test {
       if (condition()) return true;
       clock_.advance(from_seconds(1.0 / 60.0));
       if (!clock_.wait_for_waiters(hub.status().size())) return false;
-      const wind::WindVector wind = hub.advance().wind;
+      const wind::Vector wind = hub.advance().wind;
       if (tick > 0 || has_ticked_) largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(wind - last_));
       last_ = wind;
       has_ticked_ = true;
@@ -92,7 +92,7 @@ class FallbackRecordingTest : public ::testing::Test {
   test::TemporaryFolder folder_;
   ManualClock clock_;
   settings::Config config_;
-  wind::WindVector last_{};
+  wind::Vector last_{};
   double largest_step_m_s_ = 0.0;
   bool has_ticked_ = false;
 };
@@ -100,7 +100,7 @@ class FallbackRecordingTest : public ::testing::Test {
 TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveAgain) {
   std::vector<double> recorded;
   SensorHub hub(config_, clock_, shared_gusts(),
-                [&](std::size_t, const wind::WindReading& reading) { recorded.push_back(reading.speed_m_s); });
+                [&](std::size_t, const wind::Reading& reading) { recorded.push_back(reading.speed_m_s); });
   is_sending = true;
   ASSERT_TRUE(tick_until(hub, [&] { return last_.u_m_s > 11.0; })) << "the sensors' wind";
   EXPECT_EQ(hub.status().size(), 2U);
@@ -134,7 +134,7 @@ TEST_F(FallbackRecordingTest, GetsTheCalibrationOfTheSensorThatWasRecorded) {
 }
 
 TEST_F(FallbackRecordingTest, ASpikeThatWasRecordedMovesNothing) {
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   readings.reserve(1500);
   for (std::int64_t i = 0; i < 1500; ++i) readings.push_back(test::reading_at(20 * i, i % 40 == 39 ? 60.0 : 4.0));
   std::filesystem::remove(file());

@@ -9,7 +9,7 @@ namespace {
 using ::testing::HasSubstr;
 
 /// Keeps its orders, and tells what the test wants it to.
-struct NotedPlayer final : drivers::recording::RecordingPlayer {
+struct NotedPlayer final : drivers::recording::Player {
   void begin_early(double) override {}
   std::optional<std::uint64_t> order(const drivers::recording::PlayerOrder& order) override {
     if (is_full) return std::nullopt;

@@ -18,7 +18,7 @@ class RecordedSilence : public ::testing::Test {
  protected:
   /// Something each 2 s for a minute, and then a calm of half an hour.
   RecordedSilence() {
-    std::vector<wind::WindReading> readings;
+    std::vector<wind::Reading> readings;
     readings.reserve(32);
     for (std::int64_t i = 0; i < 30; ++i) {
       readings.push_back(test::reading_at(2000 * i, 3.0 + 0.1 * static_cast<double>(i % 7)));
@@ -37,7 +37,7 @@ class RecordedSilence : public ::testing::Test {
   int stale_steps(const settings::Config& config) {
     ManualClock clock;
     SensorHub hub(
-        config, clock, shared_gusts(), [](std::size_t, const wind::WindReading&) {}, 0.0, SensorThread::kOfCaller);
+        config, clock, shared_gusts(), [](std::size_t, const wind::Reading&) {}, 0.0, SensorThread::kOfCaller);
     int stale = 0;
     for (int i = 0; i < 3000; ++i) {
       clock.advance(500ms);

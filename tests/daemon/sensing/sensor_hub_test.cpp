@@ -15,7 +15,7 @@ namespace {
 
 /// What the sensor under test does when it is polled; set before the hub is made.
 struct Script {
-  std::function<void(const drivers::sensor::Clock&, drivers::sensor::SensorSink&)> first_poll;
+  std::function<void(const drivers::sensor::Clock&, drivers::sensor::Sink&)> first_poll;
   std::promise<void> polled, interrupted;
   bool wait_for_interrupt = false;
 };
@@ -23,7 +23,7 @@ Script* script = nullptr;
 
 class ScriptedSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     if (!done_) {
       done_ = true;
       script->first_poll(clock, sink);
@@ -61,8 +61,8 @@ class SensorHubTest : public ::testing::Test {
   settings::Config config_;
 };
 
-wind::WindReading reading_at(const drivers::sensor::Clock& clock, double speed_m_s) {
-  wind::WindReading reading;
+wind::Reading reading_at(const drivers::sensor::Clock& clock, double speed_m_s) {
+  wind::Reading reading;
   reading.time = clock.now();
   reading.speed_m_s = speed_m_s;
   reading.direction_deg = 90.0;
@@ -70,7 +70,7 @@ wind::WindReading reading_at(const drivers::sensor::Clock& clock, double speed_m
 }
 
 /// The wind of a hub after 10 s of ticks.
-wind::WindState wind_after_a_while(SensorHub& hub, ManualClock& clock) {
+wind::State wind_after_a_while(SensorHub& hub, ManualClock& clock) {
   for (int tick = 0; tick < 600; ++tick) {
     hub.advance();
     clock.advance(from_seconds(1.0 / 60.0));
@@ -80,14 +80,14 @@ wind::WindState wind_after_a_while(SensorHub& hub, ManualClock& clock) {
 
 TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid) {
   config_.wind.default_turbulence_intensity = 0.0;
-  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) {
     sink.reading(reading_at(clock, 6.0));
   };
   config_.sensors[0].calibration.gain = 1.5;
   config_.sensors[0].calibration.north_offset_deg = 180.0;
   std::vector<double> received;
   SensorHub hub(config_, clock_, shared_gusts(),
-                [&](std::size_t, const wind::WindReading& reading) { received.push_back(reading.speed_m_s); });
+                [&](std::size_t, const wind::Reading& reading) { received.push_back(reading.speed_m_s); });
   script_.polled.get_future().wait();
   EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
   EXPECT_EQ(received, std::vector{6.0});
@@ -98,20 +98,20 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
 
 TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
   config_.wind.default_turbulence_intensity = 0.0;
-  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) {
     sink.link(wind::LinkState::kConnected, "here");
     sink.reading(reading_at(clock, 6.0));
   };
   std::vector<double> received;
-  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t sensor, const wind::WindReading& reading) {
+  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t sensor, const wind::Reading& reading) {
     EXPECT_EQ(sensor, 0U);
     received.push_back(reading.speed_m_s);
   });
   script_.polled.get_future().wait();
 
-  const wind::WindState state = wind_after_a_while(hub, clock_);
+  const wind::State state = wind_after_a_while(hub, clock_);
   EXPECT_EQ(received, std::vector{6.0});
-  EXPECT_NE(state.source, wind::WindSource::kDefault);
+  EXPECT_NE(state.source, wind::Source::kDefault);
   EXPECT_NEAR(state.wind.u_m_s, -6.0, 0.2);
 
   const std::vector<wire::SensorStatus> status = hub.status();
@@ -124,10 +124,10 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
 }
 
 TEST_F(SensorHubTest, AVaneThatFallsSilentIsMissedWhileTheCupTurns) {
-  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) {
     sink.link(wind::LinkState::kConnected, "here");
     for (int second = 0; second < 240; ++second) {
-      wind::WindReading reading = reading_at(clock, 4.0 + 0.01 * second);
+      wind::Reading reading = reading_at(clock, 4.0 + 0.01 * second);
       reading.time.mono -= std::chrono::seconds(240 - second);
       if (second > 60) reading.direction_deg.reset();
       sink.reading(reading);
@@ -148,7 +148,7 @@ TEST_F(SensorHubTest, AVaneThatFallsSilentIsMissedWhileTheCupTurns) {
 /// Says one reading, and then ten times a second that it still holds.
 class HoldingSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     const Instant now = clock.now();
     if (now.mono - reading_.time.mono >= std::chrono::milliseconds(100)) {
       reading_.is_held = reading_.speed_m_s > 0.0;
@@ -160,7 +160,7 @@ class HoldingSensor final : public drivers::sensor::Sensor {
   }
 
  private:
-  wind::WindReading reading_;
+  wind::Reading reading_;
 };
 
 const drivers::sensor::DriverDescription kHoldingDriver{
@@ -174,7 +174,7 @@ const drivers::sensor::DriverDescription kHoldingDriver{
 TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
   config_.sensors[0].driver = &kHoldingDriver;
   std::atomic<int> received = 0;
-  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t, const wind::WindReading&) { ++received; });
+  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t, const wind::Reading&) { ++received; });
   // Two minutes: a sensor that measured the same for so long would be frozen.
   for (int tick = 0; tick < 1200; ++tick) {
     clock_.advance(std::chrono::milliseconds(100));
@@ -189,7 +189,7 @@ TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
 /// Throws at its first poll, and says one reading at each of the others.
 class ThrowingSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     if (!std::exchange(has_thrown_, true)) throw std::runtime_error("out of descriptors");
     sink.link(wind::LinkState::kConnected, "here");
     sink.reading(reading_at(clock, 6.0));
@@ -223,14 +223,14 @@ TEST_F(SensorHubTest, ADriverThatThrowsIsAStateAndIsTriedAgain) {
 }
 
 TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
-  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) {
     sink.refused(drivers::decode::Refusal::kTimeout);
     sink.refused(drivers::decode::Refusal::kTimeout);
     sink.reading(reading_at(clock, std::numeric_limits<double>::quiet_NaN()));
     sink.reading(reading_at(clock, -3.0));
   };
   bool received = false;
-  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t, const wind::WindReading&) { received = true; });
+  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t, const wind::Reading&) { received = true; });
   script_.polled.get_future().wait();
   hub.advance();
 
@@ -244,7 +244,7 @@ TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
 
 TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
   script_.wait_for_interrupt = true;
-  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink&) {};
+  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::Sink&) {};
   {
     const SensorHub hub(config_, clock_, shared_gusts());
     script_.polled.get_future().wait();
@@ -253,7 +253,7 @@ TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
 }
 
 TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
-  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) {
     for (int count = 0; count < 2000; ++count) sink.reading(reading_at(clock, 1.0));
   };
   SensorHub hub(config_, clock_, shared_gusts());
@@ -266,7 +266,7 @@ TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
 }
 
 TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
-  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::Sink& sink) {
     const std::vector<std::uint8_t> message = {1, 2, 3};
     sink.raw(drivers::sensor::RawDirection::kSent, message);
     for (int i = 0; i < 5; ++i) sink.raw(drivers::sensor::RawDirection::kReceived, message);
@@ -287,7 +287,7 @@ TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
 
 TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
   std::promise<void> is_traced;
-  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::Sink& sink) {
     is_traced.get_future().wait();
     sink.raw(drivers::sensor::RawDirection::kSent, std::vector<std::uint8_t>{1, 3, 0});
     sink.raw(drivers::sensor::RawDirection::kReceived, std::vector<std::uint8_t>(700, 0x5A));
@@ -314,7 +314,7 @@ TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
 
 TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
   std::promise<void> is_traced, is_drained, is_flooded;
-  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::Sink& sink) {
     const std::vector<std::uint8_t> message = {1};
     is_traced.get_future().wait();
     for (int i = 0; i < 1000; ++i) sink.raw(drivers::sensor::RawDirection::kReceived, message);
@@ -343,7 +343,7 @@ TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
 
 TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
   std::promise<void> is_traced;
-  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [&](const drivers::sensor::Clock&, drivers::sensor::Sink& sink) {
     is_traced.get_future().wait();
     sink.raw(drivers::sensor::RawDirection::kReceived, std::vector<std::uint8_t>{1});
   };
@@ -359,7 +359,7 @@ TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
 }
 
 TEST_F(SensorHubTest, IsFinishedWhenEveryRecordingIs) {
-  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
+  script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::Sink& sink) {
     sink.link(wind::LinkState::kFinished, "the end");
   };
   const SensorHub hub(config_, clock_, shared_gusts());

@@ -27,7 +27,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// What a sensor's thread hands to the test, which speaks in its place while the thread waits.
 struct SensorControl {
-  std::promise<drivers::sensor::SensorSink*> sink;
+  std::promise<drivers::sensor::Sink*> sink;
   std::promise<void> end;
 };
 std::deque<SensorControl>* controls = nullptr;
@@ -36,7 +36,7 @@ std::size_t controls_given = 0;
 class ControlledSensor final : public drivers::sensor::Sensor {
  public:
   ControlledSensor() : control_(controls->at(controls_given++)) {}
-  MonoTime poll(const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock&, drivers::sensor::Sink& sink) override {
     control_.sink.set_value(&sink);
     control_.end.get_future().wait();
     return MonoTime::max();
@@ -81,8 +81,8 @@ class SensorJudgement : public ::testing::Test {
     controls_.resize(config_.sensors.size());
     controls = &controls_;
     controls_given = 0;
-    hub_ = std::make_unique<SensorHub>(config_, clock_, noise,
-                                       [this](std::size_t, const wind::WindReading&) { ++recorded_; });
+    hub_ =
+        std::make_unique<SensorHub>(config_, clock_, noise, [this](std::size_t, const wind::Reading&) { ++recorded_; });
     for (SensorControl& control : controls_) {
       sinks_.push_back(control.sink.get_future().get());
       sinks_.back()->link(wind::LinkState::kConnected, "here");
@@ -90,7 +90,7 @@ class SensorJudgement : public ::testing::Test {
   }
 
   void publish(std::size_t sensor, double speed_m_s, double direction_deg = 250.0, double late_s = 0.0) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time = clock_.now();
     reading.time.mono -= from_seconds(late_s);
     reading.speed_m_s = speed_m_s;
@@ -110,8 +110,8 @@ class SensorJudgement : public ::testing::Test {
     for (int tick = 0; tick < ticks; ++tick) {
       clock_.advance(from_seconds(1.0 / kTicksPerSecond));
       if (tick % kTicksPerSecond == 0) each();
-      const wind::WindVector before = hub_->wind().wind;
-      const wind::WindState& state = hub_->advance();
+      const wind::Vector before = hub_->wind().wind;
+      const wind::State& state = hub_->advance();
       ASSERT_TRUE(std::isfinite(state.wind.u_m_s) && std::isfinite(state.wind.v_m_s));
       largest_wind_m_s_ = std::max(largest_wind_m_s_, speed_of(state.wind));
       largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(state.wind - before));
@@ -132,7 +132,7 @@ class SensorJudgement : public ::testing::Test {
   ManualClock clock_;
   settings::Config config_;
   std::deque<SensorControl> controls_;
-  std::vector<drivers::sensor::SensorSink*> sinks_;
+  std::vector<drivers::sensor::Sink*> sinks_;
   std::unique_ptr<SensorHub> hub_;
   wind::ReadingQuality quality_ = wind::ReadingQuality::kGood;
   int recorded_ = 0;
@@ -163,7 +163,7 @@ TEST_F(SensorJudgementOfTwo, AMaximumIsShownAndMakesNoWind) {
   EXPECT_GT(*hub_->status()[0].speed_m_s, 9.0);
   EXPECT_THAT(reason(0), HasSubstr("its speeds are maxima, which are not used as wind. Set the station to send"));
   EXPECT_FALSE(hub_->is_any_live()) << "a recording may stand in for it";
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kDefault);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kDefault);
 
   // Beside another sensor it neither makes the wind nor outvotes it.
   go_on(600, [&] {
@@ -180,7 +180,7 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
   start();
   go_on(120, [&] { publish(0, breeze()); });
   EXPECT_EQ(state(), wind::judging::SensorState::kLive);
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
   const double normal_step_m_s = std::exchange(largest_step_m_s_, 0.0);
 
   go_on(60, [&] { publish(0, 6.5); });
@@ -189,11 +189,11 @@ TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenIt
   EXPECT_EQ(hub_->status()[0].health, wind::SourceHealth::kLive) << "it speaks";
   EXPECT_EQ(hub_->status()[0].speed_m_s, 6.5) << "what it says is shown";
   go_on(60, [&] { publish(0, 6.5); });
-  EXPECT_NE(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_NE(hub_->wind().source, wind::Source::kLive);
 
   go_on(30, [&] { publish(0, breeze()); });
   EXPECT_EQ(state(), wind::judging::SensorState::kLive);
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
   EXPECT_LT(largest_step_m_s_, 2.0 * normal_step_m_s) << "neither loss nor return is a jump";
   EXPECT_EQ(recorded_, 270) << "a recording keeps everything";
 
@@ -230,7 +230,7 @@ TEST_F(SensorJudgement, ASimulationMayBeAsSteadyAsItLikesAndSoMayOneThatIsNotJud
   start();
   go_on(900, [&] { publish(0, 6.0); });
   EXPECT_EQ(state(), wind::judging::SensorState::kSimulated);
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
 }
 
 TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
@@ -239,7 +239,7 @@ TEST_F(SensorJudgement, NothingIsJudgedWhereTheConfigurationSaysSo) {
   go_on(60, [&] { publish(0, breeze()); });
   go_on(300, [&] { publish(0, 6.0); });
   EXPECT_EQ(state(), wind::judging::SensorState::kLive);
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
 }
 
 TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
@@ -276,7 +276,7 @@ TEST_F(SensorJudgement, ANewCalibrationIsNoSpikeAndNoJumpAndCostsNoReading) {
   EXPECT_TRUE(hub_->status()[0].refused.empty()) << "every reading was believed";
   EXPECT_EQ(recorded_, 360);
   EXPECT_NEAR(hub_->status()[0].speed_m_s.value_or(0.0), 2.5 * hub_->status()[0].raw_speed_m_s.value_or(0.0), 1e-9);
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
   EXPECT_GT(largest_wind_m_s_, 12.0);
   EXPECT_LT(largest_step_m_s_, 6.0 * normal_step_m_s) << "as a gust of this size";
   EXPECT_EQ(lines_of_log_with("warning"), 0) << log_.str();
@@ -394,7 +394,7 @@ TEST_F(SensorJudgement, AMessageThatIsRepeatedIsJudgedOnceAndNeverStale) {
   });
   EXPECT_EQ(stale, 0);
   EXPECT_EQ(recorded_, 300) << "a recording keeps everything";
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
   EXPECT_THAT(reason(), HasSubstr("a reading every 18 s"));
   EXPECT_THAT(hub_->status()[0].refused, ::testing::Contains(std::pair<std::string, std::uint64_t>("rejected", 3)))
       << "the spike, and what repeats it";
@@ -449,7 +449,7 @@ TEST_F(SensorJudgementOfThree, TheOneThatIsOutvotedLosesTheWindToTheNext) {
   EXPECT_EQ(state(1), wind::judging::SensorState::kLive);
   EXPECT_EQ(state(2), wind::judging::SensorState::kLive);
   go_on(60, [&] { all_say(33.0); });
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
   EXPECT_LT(speed_of(hub_->wind().wind), 12.0) << "the next one's";
   go_on(1000, [&] { all_say(5.5); });
   EXPECT_EQ(state(0), wind::judging::SensorState::kLive);
@@ -519,27 +519,27 @@ TEST(SensorJury, WhatIsSaidAgainIsLevelledAsTheFirstTime) {
   const JuryRules rules{.judge = wind::judging::JudgeSettings{}, .is_compared = true};
   SensorJury jury({rules, rules}, 5.0, true);
   const auto reading_at = [](double time_s, double speed_m_s) {
-    wind::WindReading reading;
+    wind::Reading reading;
     reading.time.mono = MonoTime(from_seconds(time_s));
     reading.speed_m_s = speed_m_s;
     reading.gust_m_s = 1.5 * speed_m_s;
     return reading;
   };
-  const wind::WindReading untouched = reading_at(999.0, 5.5);
+  const wind::Reading untouched = reading_at(999.0, 5.5);
   jury.hear(0, untouched);
   EXPECT_TRUE(says_the_same(jury.levelled(0, untouched), untouched)) << "nothing is known";
   using Learnt = wind::judging::GroupGains::Learnt;
   ASSERT_TRUE(jury.restore_gains(std::vector<Learnt>{{0.2, 3600.0}, {-0.2, 3600.0}}));
-  const wind::WindReading first = reading_at(1000.0, 6.0);
+  const wind::Reading first = reading_at(1000.0, 6.0);
   jury.hear(0, first);
-  const wind::WindReading levelled = jury.levelled(0, first);
+  const wind::Reading levelled = jury.levelled(0, first);
   EXPECT_NEAR(levelled.speed_m_s, 6.0 * std::exp(-0.2), 1e-12);
   EXPECT_NEAR(*levelled.gust_m_s, 9.0 * std::exp(-0.2), 1e-12);
   ASSERT_TRUE(jury.restore_gains(std::vector<Learnt>{{0.1, 3600.0}, {-0.1, 3600.0}}));
-  const wind::WindReading again = reading_at(1001.0, 6.0);
+  const wind::Reading again = reading_at(1001.0, 6.0);
   jury.hear(0, again);
   EXPECT_TRUE(says_the_same(jury.levelled(0, again), levelled));
-  const wind::WindReading next = reading_at(1002.0, 6.1);
+  const wind::Reading next = reading_at(1002.0, 6.1);
   jury.hear(0, next);
   EXPECT_NEAR(jury.levelled(0, next).speed_m_s, 6.1 * std::exp(-0.1), 1e-12);
 }
@@ -600,8 +600,8 @@ TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheState
   }
   EXPECT_LE(largest_wind_m_s_, wind::kMaxPlausibleSpeed_m_s);
 
-  for (drivers::sensor::SensorSink* sink : sinks_) sink->link(wind::LinkState::kConnected, "here");
-  wind::WindVector sum{};
+  for (drivers::sensor::Sink* sink : sinks_) sink->link(wind::LinkState::kConnected, "here");
+  wind::Vector sum{};
   int seconds_seen = 0;
   go_on(180, [&] {
     publish(0, breeze());
@@ -610,7 +610,7 @@ TEST_F(SensorJudgementOfTwo, RandomFaultsLeaveTheWindFiniteAndBoundedAndTheState
   });
   EXPECT_EQ(state(0), wind::judging::SensorState::kLive) << reason(0);
   EXPECT_EQ(state(1), wind::judging::SensorState::kLive) << reason(1);
-  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_EQ(hub_->wind().source, wind::Source::kLive);
   EXPECT_NEAR(speed_of(sum) / 60.0, 6.0, 2.0);
 }
 

@@ -24,7 +24,7 @@ class HangingSensor final : public drivers::sensor::Sensor {
 
   explicit HangingSensor(std::shared_ptr<Gates> gates) : gates_(std::move(gates)) {}
 
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink&) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink&) override {
     gates_->has_begun.release();
     gates_->go_on.acquire();
     return clock.now().mono;
@@ -50,7 +50,7 @@ class TalkativeStation final : public drivers::sensor::Sensor {
  public:
   explicit TalkativeStation(int times) : times_(times) {}
 
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     for (int i = 0; i < times_; ++i) {
       wind::StationQuantities quantities;
       quantities.time = clock.now();
@@ -67,7 +67,7 @@ class TalkativeStation final : public drivers::sensor::Sensor {
 TEST(SensorRunner, PassesOnPlausibleQuantitiesAndCountsWhatHasNoRoom) {
   ManualClock clock;
   SensorRunner runner(std::make_unique<TalkativeStation>(1001), clock, SensorThread::kOfCaller);
-  runner.drain([](const wind::WindReading&) { FAIL() << "it has no wind"; });
+  runner.drain([](const wind::Reading&) { FAIL() << "it has no wind"; });
   std::uint64_t passed = 0;
   runner.drain_quantities([&](const wind::StationQuantities& quantities) {
     EXPECT_EQ(quantities.air_temperature_c, 20.0);
@@ -83,8 +83,8 @@ TEST(SensorRunner, PassesOnPlausibleQuantitiesAndCountsWhatHasNoRoom) {
 class TellsItsThread final : public drivers::sensor::Sensor {
  public:
   explicit TellsItsThread(std::thread::id caller) : caller_(caller) {}
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
-    wind::WindReading reading;
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
+    wind::Reading reading;
     reading.time = clock.now();
     reading.speed_m_s = std::this_thread::get_id() == caller_ ? 1.0 : 2.0;
     sink.reading(reading);
@@ -100,7 +100,7 @@ TEST(SensorRunner, ThatTheCallerHasPolledGoesOnOnAThreadOfItsOwn) {
   SensorRunner runner(std::make_unique<TellsItsThread>(std::this_thread::get_id()), clock, SensorThread::kOfCaller);
   std::vector<double> speeds_m_s;
   const auto drain = [&] {
-    runner.drain([&](const wind::WindReading& reading) { speeds_m_s.push_back(reading.speed_m_s); });
+    runner.drain([&](const wind::Reading& reading) { speeds_m_s.push_back(reading.speed_m_s); });
   };
   drain();
   EXPECT_EQ(speeds_m_s, std::vector{1.0});

@@ -14,7 +14,7 @@ SensorEvidence well() {
   SensorEvidence evidence;
   evidence.link = wind::LinkState::kConnected;
   evidence.link_detail = "answers at 10.0.0.5:502";
-  wind::WindReading reading;
+  wind::Reading reading;
   reading.speed_m_s = 3.42;
   evidence.report = {.health = wind::SourceHealth::kLive, .interval_s = 1.0, .age_s = 0.4, .last = reading};
   return evidence;

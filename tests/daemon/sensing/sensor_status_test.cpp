@@ -14,7 +14,7 @@ SensorFacts roof_that_speaks() {
   SensorFacts facts{.name = "roof", .driver = "modbus", .evidence = {}};
   facts.evidence.link = wind::LinkState::kConnected;
   facts.evidence.link_detail = "answers at 10.0.0.5:502";
-  wind::WindReading reading;
+  wind::Reading reading;
   reading.speed_m_s = 4.5;
   reading.direction_deg = 192.0;
   reading.gust_m_s = 6.0;

@@ -23,7 +23,7 @@ namespace {
 TEST(Service, EndsWithAFailureAndAWholeRecordingWhereTheAnimationFails) {
   const test::TemporaryFolder folder;
   const auto recording = folder / "wall.windlog";
-  ServiceOptions options;
+  Options options;
   options.record = recording;
   Service service(settings::listening_at(config_with_failing_scene(), "127.0.0.1:0"), options);
   std::string why;

@@ -458,11 +458,11 @@ TEST(Config, ASensorHasItsPartAmongSeveral) {
       "priority = 3\nweight = 2\nx = -4.5\nz = 2\naveraging = 600\ndirection_step = 22.5\n",
       "wall.toml");
   EXPECT_EQ(config.wind.return_after_s, 20.0);
-  const wind::blend::BlendSourceSettings& roof = config.sensors[0].blend;
+  const wind::blend::SourceSettings& roof = config.sensors[0].blend;
   EXPECT_FALSE(roof.is_relative);
   EXPECT_EQ(roof.priority, 0);
   EXPECT_EQ(roof.weight, 1.0);
-  const wind::blend::BlendSourceSettings& microphone = config.sensors[1].blend;
+  const wind::blend::SourceSettings& microphone = config.sensors[1].blend;
   EXPECT_TRUE(microphone.is_relative);
   EXPECT_EQ(microphone.priority, 3);
   EXPECT_EQ(microphone.weight, 2.0);
@@ -500,7 +500,7 @@ TEST(Config, WhereASensorStandsIsToldOrNotAndStaysSoWhenWrittenOut) {
     const std::string written = to_toml(config);
     const Config again = parse_config(written, "again.toml");
     EXPECT_EQ(to_toml(again), written) << one.blend;
-    for (const wind::blend::BlendSourceSettings& source : {source_of(config), source_of(again)}) {
+    for (const wind::blend::SourceSettings& source : {source_of(config), source_of(again)}) {
       EXPECT_EQ(source.has_place, one.has_place) << one.blend;
       EXPECT_EQ(source.east_m, one.east_m) << one.blend;
       EXPECT_EQ(source.south_m, one.south_m) << one.blend;
@@ -541,7 +541,7 @@ TEST(Config, ASceneOfAnyKindHasAPlaceAGainAndIsShownOrNot) {
 }
 
 TEST(Config, NoKindOfSceneHasAParameterOfTheCommonNames) {
-  for (const scenes::SceneDescription* scene : scenes::scene_table()) {
+  for (const scenes::Description* scene : scenes::scene_table()) {
     for (const Parameter& own : scene->parameters) {
       for (const Parameter& common : common_scene_parameters()) EXPECT_NE(own.name, common.name) << scene->name;
       EXPECT_NE(own.name, "name") << scene->name;
@@ -822,7 +822,7 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
   for (const SensorTable& table : sensor_tables()) check(table.name, table.parameters);
   for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table())
     check(driver->name, driver->parameters);
-  for (const scenes::SceneDescription* scene : scenes::scene_table()) check(scene->name, scene->parameters);
+  for (const scenes::Description* scene : scenes::scene_table()) check(scene->name, scene->parameters);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ class ShaperBench {
       mono += from_seconds(step_s);
       utc += from_seconds(step_s);
       wind::ground::DrivingWind wind{.state = {.time = mono, .wind = {speed_m_s, 0.0}, .live_weight = 1.0},
-                                     .ground = wind::WindVector{speed_m_s, 0.0}};
+                                     .ground = wind::Vector{speed_m_s, 0.0}};
       shaper.shape(wind, utc, is_any_live);
       shaped_m_s = speed_of(wind.state.wind);
       largest_step_m_s = std::max(largest_step_m_s, has_begun_ ? std::abs(shaped_m_s - last_m_s_) : 0.0);

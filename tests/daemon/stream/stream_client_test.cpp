@@ -43,7 +43,7 @@ class StreamClientTest : public testing::Test {
 };
 
 TEST_F(StreamClientTest, ItReceivesWhatItSubscribedTo) {
-  auto client = StreamClient::connect(stream_.local_endpoint(), 5s);
+  auto client = Client::connect(stream_.local_endpoint(), 5s);
   ASSERT_TRUE(client.has_value()) << client.error().message;
   EXPECT_EQ(std::get<wire::Hello>(client->receive(5s).value()).software, "test");
   ASSERT_TRUE(client->subscribe({.poses = true, .sensors = true, .client = "a test"}));
@@ -57,21 +57,21 @@ TEST_F(StreamClientTest, ItReceivesWhatItSubscribedTo) {
 }
 
 TEST_F(StreamClientTest, ATimeOutIsNotTheEnd) {
-  auto client = StreamClient::connect(stream_.local_endpoint(), 5s);
+  auto client = Client::connect(stream_.local_endpoint(), 5s);
   ASSERT_TRUE(client.has_value());
   ASSERT_TRUE(client->receive(5s).has_value());
-  EXPECT_EQ(client->receive(1ms).error(), StreamEnd::kTimeout);
+  EXPECT_EQ(client->receive(1ms).error(), End::kTimeout);
   ASSERT_TRUE(client->subscribe({.client = "a test"}));
   EXPECT_TRUE(std::holds_alternative<wire::Scenes>(client->receive(5s).value()));
 }
 
 TEST_F(StreamClientTest, AClosedConnectionIsTold) {
-  auto client = StreamClient::connect(stream_.local_endpoint(), 5s);
+  auto client = Client::connect(stream_.local_endpoint(), 5s);
   ASSERT_TRUE(client.has_value());
   ASSERT_TRUE(client->receive(5s).has_value());
   on_server([this] { stream_.close(); });
-  EXPECT_EQ(client->receive(5s).error(), StreamEnd::kClosed);
-  EXPECT_EQ(client->receive(5s).error(), StreamEnd::kClosed);
+  EXPECT_EQ(client->receive(5s).error(), End::kClosed);
+  EXPECT_EQ(client->receive(5s).error(), End::kClosed);
 }
 
 TEST_F(StreamClientTest, WhereNobodyListensTheFailureNamesTheAddress) {
@@ -81,10 +81,10 @@ TEST_F(StreamClientTest, WhereNobodyListensTheFailureNamesTheAddress) {
     asio::io_context io;
     address = TcpStream(io, "127.0.0.1:0", settings()).local_endpoint();
   }
-  const auto client = StreamClient::connect(address, 5s);
+  const auto client = Client::connect(address, 5s);
   ASSERT_FALSE(client.has_value());
   EXPECT_NE(client.error().message.find(address), std::string::npos);
-  EXPECT_FALSE(StreamClient::connect("nonsense", 1s).has_value());
+  EXPECT_FALSE(Client::connect("nonsense", 1s).has_value());
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ class WebServerTest : public testing::Test {
  protected:
   WebServerTest() : server_(settings()) { server_.publish_sensors(status_of("roof"), status_of("roof")); }
 
-  WebSettings settings() {
+  Settings settings() {
     return {.listen = "127.0.0.1:0",
             .hosts = {"roof"},
             .software = "yuragi 0.0.0",
@@ -108,7 +108,7 @@ class WebServerTest : public testing::Test {
 
   bool replies_ = true;
   std::string asked_;  // on the server's thread, before its answer
-  WebServer server_;
+  Server server_;
 };
 
 TEST_F(WebServerTest, AnswersRequestAfterRequestOnOneConnection) {
@@ -209,10 +209,10 @@ TEST_F(WebServerTest, NobodyElsesPageSeesOrChangesAnything) {
   EXPECT_EQ(asked_, "meadow from here;");
 }
 TEST_F(WebServerTest, WithATokenRightsComeFromItWhateverTheAddress) {
-  WebSettings with_token = settings();
+  Settings with_token = settings();
   with_token.takes_token = true;
   with_token.token = Secret("correct horse battery staple");
-  WebServer server(std::move(with_token));
+  Server server(std::move(with_token));
   server.publish_sensors(status_of("roof"), status_of("roof"));
   Client client(server.local_endpoint());
   const std::string body = R"({"scene":"meadow"})";
@@ -235,19 +235,19 @@ TEST_F(WebServerTest, WithATokenRightsComeFromItWhateverTheAddress) {
 /// A daemon with a token that keeps its pairings in a file.
 class PairedBrowserTest : public WebServerTest {
  protected:
-  std::unique_ptr<WebServer> start() {
-    WebSettings with_token = settings();
+  std::unique_ptr<Server> start() {
+    Settings with_token = settings();
     with_token.takes_token = true;
     with_token.token = kToken;
     with_token.pairings_file = file_;
-    return std::make_unique<WebServer>(std::move(with_token));
+    return std::make_unique<Server>(std::move(with_token));
   }
   /// The field of the header by which the browser that was paired is known.
   static std::string cookie_in(const std::string& answer) {
     const std::size_t begin = answer.find("yuragi_session=");
     return "Cookie: " + answer.substr(begin, answer.find(';', begin) - begin) + "\r\n";
   }
-  static std::string change(const WebServer& server, const std::string& fields) {
+  static std::string change(const Server& server, const std::string& fields) {
     return Client(server.local_endpoint()).post("/api/v1/scenes", R"({"scene":"meadow"})", kJson + fields);
   }
 
@@ -297,10 +297,10 @@ TEST_F(PairedBrowserTest, ARevocationThatCannotBeSavedHoldsUntilTheRestart_AndIs
   EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 401"));
 }
 TEST_F(WebServerTest, WithATokenThatCannotBeReadNobodyChangesAnything) {
-  WebSettings locked = settings();
+  Settings locked = settings();
   locked.takes_token = true;
   locked.reading_takes_token = true;
-  WebServer server(std::move(locked));
+  Server server(std::move(locked));
   server.publish_sensors(status_of("roof"), status_of("roof"));
   Client client(server.local_endpoint());
   EXPECT_THAT(client.get("/healthz"), StartsWith("HTTP/1.1 200"));
@@ -335,9 +335,9 @@ class SilentDaemonTest : public WebServerTest {
  protected:
   SilentDaemonTest() {
     replies_ = false;
-    silent_ = std::make_unique<WebServer>(settings());
+    silent_ = std::make_unique<Server>(settings());
   }
-  std::unique_ptr<WebServer> silent_;
+  std::unique_ptr<Server> silent_;
 };
 TEST_F(SilentDaemonTest, AQuestionIsGivenUp) {
   EXPECT_THAT(Client(silent_->local_endpoint()).get("/api/v1/scenes"), StartsWith("HTTP/1.1 503"));
@@ -348,12 +348,12 @@ class RecordingDaemonTest : public WebServerTest {
  protected:
   /// What the daemon answers to who asks for `path`.
   std::string answer(const std::string& path, const std::string& fields = "") {
-    WebSettings recording = settings();
+    Settings recording = settings();
     if (history_) recording.history = history_;
     recording.log = [](std::size_t most) {
       return std::vector<LogLine>(std::min<std::size_t>(most, 3), {1.5, "warning", "\xff"});
     };
-    const WebServer server(std::move(recording));
+    const Server server(std::move(recording));
     return Client(server.local_endpoint()).get(path, fields);
   }
   /// Its reading fails so.

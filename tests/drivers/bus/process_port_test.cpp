@@ -177,11 +177,11 @@ class MicrophoneWatchdog : public ProcessPortTest {
 
   /// What the sensor says of a worker, when it has been started so often.
   std::string detail_after(const std::string& worker_text, int attempts = 3) {
-    microphone::MicrophoneSettings settings;
+    microphone::Settings settings;
     settings.start_timeout = 300ms;
     settings.sound_timeout = 300ms;
     test::LiveSensor sensor(
-        std::make_unique<microphone::MicrophoneSensor>(settings, 1, make_process_port({script(worker_text)})));
+        std::make_unique<microphone::Sensor>(settings, 1, make_process_port({script(worker_text)})));
     for (int attempt = 0; attempt < attempts; ++attempt) {
       pollfd wait{attempts_.get(), POLLIN, 0};
       char newline = 0;
@@ -219,10 +219,10 @@ TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatBabbles) {
 }
 
 TEST_F(MicrophoneWatchdog, InterruptEndsItsWaitForTheWorker) {
-  microphone::MicrophoneSettings settings;
+  microphone::Settings settings;
   settings.start_timeout = 1h;
   test::LiveSensor sensor(
-      std::make_unique<microphone::MicrophoneSensor>(settings, 1, make_process_port({script("exec sleep 10000")})));
+      std::make_unique<microphone::Sensor>(settings, 1, make_process_port({script("exec sleep 10000")})));
   sensor.end();  // hangs if it waits for the worker
   EXPECT_EQ(sensor.sink.count(decode::Refusal::kTimeout), 0);
 }

@@ -58,7 +58,7 @@ class EchoServer {
   BytePortAddress address;
 
  private:
-  std::unique_ptr<simulators::text::TextWire> wire_;
+  std::unique_ptr<simulators::text::Wire> wire_;
   std::atomic<bool> is_wanted_ = true;
   std::atomic<bool> refuses_ = false;
   std::thread thread_;

@@ -18,15 +18,15 @@ testing::AssertionResult is_refused(const Result<double, Refusal>& decoded, Refu
   return testing::AssertionFailure() << (decoded ? "accepted" : name_of(decoded.error())) << ", not " << name_of(why);
 }
 
-modbus::ModbusQuantity speed(modbus::RegisterType type, modbus::ByteOrder order = modbus::ByteOrder::kABCD) {
-  modbus::ModbusQuantity quantity;
+modbus::Quantity speed(modbus::RegisterType type, modbus::ByteOrder order = modbus::ByteOrder::kABCD) {
+  modbus::Quantity quantity;
   quantity.type = type;
   quantity.order = order;
   return quantity;
 }
 
-modbus::ModbusQuantity direction(modbus::DirectionMap map) {
-  modbus::ModbusQuantity quantity;
+modbus::Quantity direction(modbus::DirectionMap map) {
+  modbus::Quantity quantity;
   quantity.unit = modbus::QuantityUnit::kDegrees;
   quantity.map = map;
   return quantity;
@@ -46,7 +46,7 @@ TEST(ModbusQuantity, ReadsEveryType) {
 }
 
 TEST(ModbusQuantity, ReadsNegativeNumbersOfSignedTypesAsNegative) {
-  modbus::ModbusQuantity shifted = speed(modbus::RegisterType::kI16);
+  modbus::Quantity shifted = speed(modbus::RegisterType::kI16);
   shifted.offset = 10.0;
   EXPECT_DOUBLE_EQ(*modbus::decode_speed_m_s(shifted, Registers{0xFFFE}), 8.0);
   shifted.type = modbus::RegisterType::kI32;
@@ -72,7 +72,7 @@ TEST(ModbusQuantity, ReadsEveryByteOrder) {
 }
 
 TEST(ModbusQuantity, ConvertsEveryUnitToMetresPerSecond) {
-  modbus::ModbusQuantity quantity = speed(modbus::RegisterType::kU16);
+  modbus::Quantity quantity = speed(modbus::RegisterType::kU16);
   quantity.scale = 0.1;
   quantity.unit = modbus::QuantityUnit::kMetresPerSecond;
   EXPECT_NEAR(*modbus::decode_speed_m_s(quantity, Registers{360}), 36.0, 1e-12);
@@ -85,15 +85,15 @@ TEST(ModbusQuantity, ConvertsEveryUnitToMetresPerSecond) {
 }
 
 TEST(ModbusQuantity, RefusesTheDevicesMarksForNoValue) {
-  modbus::ModbusQuantity lufft = speed(modbus::RegisterType::kI16);
+  modbus::Quantity lufft = speed(modbus::RegisterType::kI16);
   lufft.invalid = {0x7FFF};
   EXPECT_TRUE(is_refused(modbus::decode_speed_m_s(lufft, Registers{0x7FFF}), Refusal::kInvalid));
 
-  modbus::ModbusQuantity lambrecht = speed(modbus::RegisterType::kI16);
+  modbus::Quantity lambrecht = speed(modbus::RegisterType::kI16);
   lambrecht.invalid = {-9999};
   EXPECT_TRUE(is_refused(modbus::decode_speed_m_s(lambrecht, Registers{0xD8F1}), Refusal::kInvalid));
 
-  modbus::ModbusQuantity gill = speed(modbus::RegisterType::kF32);
+  modbus::Quantity gill = speed(modbus::RegisterType::kF32);
   gill.invalid = {0x7FFFFFFF};
   EXPECT_TRUE(is_refused(modbus::decode_speed_m_s(gill, Registers{0x7FFF, 0xFFFF}), Refusal::kInvalid));
   EXPECT_TRUE(is_refused(modbus::decode_direction_deg(gill, Registers{0x7FFF, 0xFFFF}), Refusal::kInvalid));
@@ -105,7 +105,7 @@ TEST(ModbusQuantity, RefusesNotANumberThoughNoProfileListsIt) {
 }
 
 TEST(ModbusQuantity, RefusesWhatLiesOutsideTheStatedRangeOrAnyWinds) {
-  modbus::ModbusQuantity cup = speed(modbus::RegisterType::kU16);
+  modbus::Quantity cup = speed(modbus::RegisterType::kU16);
   cup.scale = 0.1;
   cup.min = 0.0;
   cup.max = 60.0;
@@ -129,7 +129,7 @@ TEST(ModbusQuantity, RefusesFewerRegistersThanItsTypeTakes) {
 }
 
 TEST(ModbusDirection, InDegreesRunsFrom0To360And360IsNorth) {
-  const modbus::ModbusQuantity vane = direction(modbus::DirectionMap::kDegrees);
+  const modbus::Quantity vane = direction(modbus::DirectionMap::kDegrees);
   EXPECT_EQ(*modbus::decode_direction_deg(vane, Registers{0}), 0.0);
   EXPECT_EQ(*modbus::decode_direction_deg(vane, Registers{359}), 359.0);
   EXPECT_EQ(*modbus::decode_direction_deg(vane, Registers{360}), 0.0);
@@ -137,7 +137,7 @@ TEST(ModbusDirection, InDegreesRunsFrom0To360And360IsNorth) {
 }
 
 TEST(ModbusDirection, OfEightPointsStepsBy45Degrees) {
-  const modbus::ModbusQuantity vane = direction(modbus::DirectionMap::kGear8);
+  const modbus::Quantity vane = direction(modbus::DirectionMap::kGear8);
   for (std::uint16_t gear = 0; gear < 8; ++gear) {
     EXPECT_EQ(*modbus::decode_direction_deg(vane, Registers{gear}), 45.0 * gear);
   }
@@ -145,7 +145,7 @@ TEST(ModbusDirection, OfEightPointsStepsBy45Degrees) {
 }
 
 TEST(ModbusDirection, OfSixteenPointsStepsBy22AndAHalfDegrees) {
-  const modbus::ModbusQuantity vane = direction(modbus::DirectionMap::kPoint16);
+  const modbus::Quantity vane = direction(modbus::DirectionMap::kPoint16);
   for (std::uint16_t point = 0; point < 16; ++point) {
     EXPECT_EQ(*modbus::decode_direction_deg(vane, Registers{point}), 22.5 * point);
   }
@@ -153,7 +153,7 @@ TEST(ModbusDirection, OfSixteenPointsStepsBy22AndAHalfDegrees) {
 }
 
 TEST(ModbusDirection, BetweenTwoPointsIsNone) {
-  modbus::ModbusQuantity vane = direction(modbus::DirectionMap::kGear8);
+  modbus::Quantity vane = direction(modbus::DirectionMap::kGear8);
   vane.scale = 0.5;
   EXPECT_TRUE(is_refused(modbus::decode_direction_deg(vane, Registers{3}), Refusal::kImplausible));
 }
@@ -162,7 +162,7 @@ TEST(ModbusQuantity, GivesNothingButAPhysicalValueForAnyRegisters) {
   std::mt19937_64 random(7);
   int accepted = 0;
   for (int round = 0; round < 100'000; ++round) {
-    modbus::ModbusQuantity quantity;
+    modbus::Quantity quantity;
     quantity.type = static_cast<modbus::RegisterType>(random() % 5);
     quantity.order = static_cast<modbus::ByteOrder>(random() % 4);
     quantity.unit = static_cast<modbus::QuantityUnit>(random() % 4);

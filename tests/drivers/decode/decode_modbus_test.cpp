@@ -13,17 +13,15 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using testing::ElementsAre;
 
-const modbus::ModbusRequest kSpeedOfSlave1 = {
-    .transaction = 0x1234, .unit = 1, .function = 3, .address = 0, .count = 1};
+const modbus::Request kSpeedOfSlave1 = {.transaction = 0x1234, .unit = 1, .function = 3, .address = 0, .count = 1};
 
-std::vector<std::uint16_t> registers_of(const Result<modbus::ModbusRegisters, modbus::ModbusRefusal>& decoded) {
+std::vector<std::uint16_t> registers_of(const Result<modbus::Registers, modbus::RefusedReply>& decoded) {
   if (!decoded) return {};
   return {decoded->span().begin(), decoded->span().end()};
 }
 
 /// What is wrong with a message; a test that expects a refusal fails if nothing is.
-testing::AssertionResult is_refused_reply(const Result<modbus::ModbusRegisters, modbus::ModbusRefusal>& decoded,
-                                          Refusal why) {
+testing::AssertionResult is_refused_reply(const Result<modbus::Registers, modbus::RefusedReply>& decoded, Refusal why) {
   if (!decoded && decoded.error().why == why) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (decoded ? "accepted" : name_of(decoded.error().why)) << ", not "
                                      << name_of(why);
@@ -37,8 +35,7 @@ Bytes with_crc(Bytes message) {
 }
 
 TEST(ModbusRequestBytes, GoOnTcpWithTransactionLengthAndUnitInFront) {
-  const modbus::ModbusRequest request = {
-      .transaction = 0x0102, .unit = 17, .function = 4, .address = 0x7531, .count = 2};
+  const modbus::Request request = {.transaction = 0x0102, .unit = 17, .function = 4, .address = 0x7531, .count = 2};
   EXPECT_THAT(modbus::encode_tcp(request), ElementsAre(1, 2, 0, 0, 0, 6, 17, 4, 0x75, 0x31, 0, 2));
 }
 
@@ -48,7 +45,7 @@ TEST(ModbusRequestBytes, OnASerialLineHaveTheCrcOfThePublishedFrame) {
 }
 
 TEST(ModbusTcpAnswer, GivesItsRegisters) {
-  const modbus::ModbusRequest request = {.transaction = 7, .unit = 2, .function = 3, .address = 0, .count = 2};
+  const modbus::Request request = {.transaction = 7, .unit = 2, .function = 3, .address = 0, .count = 2};
   const Bytes answer = {0, 7, 0, 0, 0, 7, 2, 3, 4, 0x00, 0x02, 0x01, 0x5A};
   EXPECT_THAT(registers_of(modbus::decode_tcp(request, answer)), ElementsAre(2, 346));
 }
@@ -94,7 +91,7 @@ TEST(ModbusTcpAnswer, WithAnotherProtocolLengthFunctionOrByteCountIsMalformed) {
 }
 
 TEST(ModbusTcpAnswer, OfAllRegistersThatOneRequestMayAskForIsTaken) {
-  const modbus::ModbusRequest request = {.transaction = 1, .unit = 1, .function = 3, .address = 0, .count = 125};
+  const modbus::Request request = {.transaction = 1, .unit = 1, .function = 3, .address = 0, .count = 125};
   Bytes answer = {0, 1, 0, 0, 0, 253, 1, 3, 250};
   answer.resize(answer.size() + 250, 0x11);
   ASSERT_EQ(registers_of(modbus::decode_tcp(request, answer)), std::vector<std::uint16_t>(125, 0x1111));
@@ -156,7 +153,7 @@ TEST(ModbusVectors, OfTheSharedCollectionDecodeAsTheySay) {
   for (const ModbusVector& vector : vectors) {
     SCOPED_TRACE(vector.device);
     ASSERT_EQ(vector.request.size(), 8U);
-    const modbus::ModbusRequest request = {
+    const modbus::Request request = {
         .transaction = 0,
         .unit = vector.request[0],
         .function = vector.request[1],
@@ -187,12 +184,12 @@ TEST(ModbusDecoder, TakesNoRandomBytesForAnAnswer) {
   for (int round = 0; round < 200'000; ++round) {
     Bytes bytes(random() % 32);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
-    const modbus::ModbusRequest request = {.transaction = static_cast<std::uint16_t>(random()),
-                                           .unit = static_cast<std::uint8_t>(random()),
-                                           .function = 3,
-                                           .address = 0,
-                                           .count = static_cast<std::uint16_t>(random() % 200)};
-    for (const auto framing : {modbus::ModbusFraming::kTcp, modbus::ModbusFraming::kRtu}) {
+    const modbus::Request request = {.transaction = static_cast<std::uint16_t>(random()),
+                                     .unit = static_cast<std::uint8_t>(random()),
+                                     .function = 3,
+                                     .address = 0,
+                                     .count = static_cast<std::uint16_t>(random() % 200)};
+    for (const auto framing : {modbus::Framing::kTcp, modbus::Framing::kRtu}) {
       const auto decoded = modbus::decode_modbus(framing, request, bytes);
       if (decoded) {
         EXPECT_EQ(decoded->count, request.count);

@@ -52,13 +52,13 @@ class HidFault : public testing::TestWithParam<std::vector<std::string_view>> {
  protected:
   /// All are in the wind, and read.
   void plug_in(double pace) {
-    std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
+    std::vector<std::unique_ptr<simulators::usb::Port>> ports;
     for (const std::string_view model : GetParam()) {
       auto device = simulators::usb::make_hid_station(model, pace);
       const auto known = device->known_faults();
       reads_.push_back({.model = std::string(model), .known_faults = {known.begin(), known.end()}});
       ports.push_back(
-          std::make_unique<simulators::usb::UsbPort>(std::move(device), simulators::usb::steady_wind(8.6, 225.0)));
+          std::make_unique<simulators::usb::Port>(std::move(device), simulators::usb::steady_wind(8.6, 225.0)));
     }
     bus_ = std::make_unique<SimulatorThread>(std::make_unique<simulators::usb::UmockdevSimulator>(std::move(ports)));
     for (std::size_t i = 0; i < reads_.size(); ++i) {
@@ -75,7 +75,7 @@ class HidFault : public testing::TestWithParam<std::vector<std::string_view>> {
   void expect_true_winds(double or_speed_m_s) {
     for (Read& read : reads_) {
       read.sensor->look([&](const RecordingSink& sink) {
-        for (const wind::WindReading& reading : sink.readings) {
+        for (const wind::Reading& reading : sink.readings) {
           const double error_m_s =
               std::min(std::abs(reading.speed_m_s - 8.6), std::abs(reading.speed_m_s - or_speed_m_s));
           EXPECT_LT(error_m_s, 0.13) << read.model;
@@ -147,7 +147,7 @@ TEST_P(HidFault, Split) {
 TEST_P(HidFault, Spike) {
   plug_in(kFaultPace);
   bus_->set_fault(FaultKind::kSpike);
-  const auto is_spike = [](const wind::WindReading& reading) { return std::abs(reading.speed_m_s - 55.0) < 0.13; };
+  const auto is_spike = [](const wind::Reading& reading) { return std::abs(reading.speed_m_s - 55.0) < 0.13; };
   for (Read& read : reads_) {
     EXPECT_TRUE(read.sensor->wait_until(
         [&](const RecordingSink& sink) {

@@ -32,12 +32,12 @@ constexpr double kPace = 20.0;
 
 /// The stations in the sockets 1-1, 1-2 ... of a bus. "echo" is a device that is none.
 std::unique_ptr<SimulatorThread> plug_in(std::initializer_list<std::string_view> names) {
-  std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
+  std::vector<std::unique_ptr<simulators::usb::Port>> ports;
   for (const std::string_view name : names) {
     ports.push_back(name == "echo"
                         ? simulators::usb::echo_port()
-                        : std::make_unique<simulators::usb::UsbPort>(simulators::usb::make_hid_station(name, kPace),
-                                                                     simulators::usb::steady_wind(8.6, 225.0)));
+                        : std::make_unique<simulators::usb::Port>(simulators::usb::make_hid_station(name, kPace),
+                                                                  simulators::usb::steady_wind(8.6, 225.0)));
   }
   return std::make_unique<SimulatorThread>(std::make_unique<simulators::usb::UmockdevSimulator>(std::move(ports)));
 }

@@ -55,7 +55,7 @@ bool suffers(std::string_view model, FaultKind kind) {
 }
 
 void expect_the_steady_wind(const RecordingSink& sink) {
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, kSteady_m_s, 0.12);
     EXPECT_EQ(reading.direction_deg.value_or(225.0), 225.0);
   }

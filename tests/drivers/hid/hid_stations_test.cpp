@@ -57,7 +57,7 @@ TEST_P(EveryStation, TellsTheWindAsItIs) {
   bench.run_for(300.0);
   ASSERT_GT(bench.readings(), 4U);
   int with_direction = 0;
-  for (const wind::WindReading& reading : bench.sink.readings) {
+  for (const wind::Reading& reading : bench.sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 8.6, GetParam().tolerance_m_s);
     EXPECT_NEAR(reading.gust_m_s.value_or(8.6), 8.6, GetParam().tolerance_m_s);
     if (reading.direction_deg) {
@@ -85,7 +85,7 @@ TEST_P(EveryStation, KnowsAllSixteenPointsOfTheCompass) {
     bench.run_for(120.0);
     const auto last =
         std::ranges::find_if(bench.sink.readings.rbegin(), bench.sink.readings.rend(),
-                             [](const wind::WindReading& reading) { return reading.direction_deg.has_value(); });
+                             [](const wind::Reading& reading) { return reading.direction_deg.has_value(); });
     ASSERT_NE(last, bench.sink.readings.rend());
     EXPECT_NEAR(*last->direction_deg, 22.5 * point, 0.51);  // WMR300 has whole degrees
   }
@@ -329,19 +329,19 @@ TEST(FineOffsetStation, IsNotAskedMoreOftenThanItMeasures) {
 
 TEST(FineOffsetStation, SaysSoWhenTheConsoleDoesNotMeasureAnyMore) {
   /// A console that has locked up: it answers, and its memory never changes.
-  class Stuck final : public simulators::usb::UsbDevice {
+  class Stuck final : public simulators::usb::Device {
    public:
-    const simulators::usb::UsbDescriptors& descriptors() const override { return inner_.descriptors(); }
+    const simulators::usb::Descriptors& descriptors() const override { return inner_.descriptors(); }
     std::span<const FaultKind> known_faults() const override { return inner_.known_faults(); }
     void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) override {
       // A time that hardly moves: enough for its answers, too little for its next measurement.
       inner_.advance(time_s < 300.0 ? time_s : 300.0 + std::min(time_s - 300.0, 5000.0) / 1000.0, wind, fault);
     }
-    std::optional<simulators::usb::UsbBytes> control(const simulators::usb::UsbSetup& setup,
-                                                     std::span<const std::uint8_t> data) override {
+    std::optional<simulators::usb::Bytes> control(const simulators::usb::SetupPacket& setup,
+                                                  std::span<const std::uint8_t> data) override {
       return inner_.control(setup, data);
     }
-    std::optional<simulators::usb::UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) override {
+    std::optional<simulators::usb::Bytes> in(std::uint8_t endpoint, std::size_t max_size) override {
       if (auto report = inner_.in(endpoint, max_size)) return report;
       return std::nullopt;
     }
@@ -399,7 +399,7 @@ TEST_P(EveryStation, NeverTellsAFalseWindAndAlwaysComesBackUnderRandomFaults) {
     bench.run_for(kFaultsEnd_s);
 
     const double start_s = seconds(bench.bus.clock.now().mono.time_since_epoch()) - bench.bus.now_s();
-    for (const wind::WindReading& reading : bench.sink.readings) {
+    for (const wind::Reading& reading : bench.sink.readings) {
       const double time_s = seconds(reading.time.mono.time_since_epoch()) - start_s;
       const double now_m_s = wind_of(time_s).speed_m_s;
       const double before_m_s = wind_of(std::max(0.0, time_s - 60.0)).speed_m_s;
@@ -421,33 +421,33 @@ TEST_P(EveryStation, NeverTellsAFalseWindAndAlwaysComesBackUnderRandomFaults) {
 // --- devices that are none
 
 /// Says anything, always.
-class Babbler final : public simulators::usb::UsbDevice {
+class Babbler final : public simulators::usb::Device {
  public:
-  Babbler(std::unique_ptr<simulators::usb::UsbDevice> shown, std::uint64_t seed)
+  Babbler(std::unique_ptr<simulators::usb::Device> shown, std::uint64_t seed)
       : shown_(std::move(shown)), random_(seed) {}
 
-  const simulators::usb::UsbDescriptors& descriptors() const override { return shown_->descriptors(); }
+  const simulators::usb::Descriptors& descriptors() const override { return shown_->descriptors(); }
   std::span<const FaultKind> known_faults() const override { return {}; }
   void advance(double, const PlayedMoment&, std::optional<FaultKind>) override {}
-  std::optional<simulators::usb::UsbBytes> control(const simulators::usb::UsbSetup& setup,
-                                                   std::span<const std::uint8_t>) override {
+  std::optional<simulators::usb::Bytes> control(const simulators::usb::SetupPacket& setup,
+                                                std::span<const std::uint8_t>) override {
     if (random_() % 8 == 0) return std::nullopt;
     return babble(setup.length);
   }
-  std::optional<simulators::usb::UsbBytes> in(std::uint8_t, std::size_t max_size) override {
+  std::optional<simulators::usb::Bytes> in(std::uint8_t, std::size_t max_size) override {
     if (random_() % 4 == 0) return std::nullopt;
     return babble(max_size);
   }
   bool out(std::uint8_t, std::span<const std::uint8_t>) override { return random_() % 8 != 0; }
 
  private:
-  simulators::usb::UsbBytes babble(std::size_t max_size) {
-    simulators::usb::UsbBytes bytes(1 + random_() % std::max<std::size_t>(1, max_size));
+  simulators::usb::Bytes babble(std::size_t max_size) {
+    simulators::usb::Bytes bytes(1 + random_() % std::max<std::size_t>(1, max_size));
     std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
     return bytes;
   }
 
-  std::unique_ptr<simulators::usb::UsbDevice> shown_;
+  std::unique_ptr<simulators::usb::Device> shown_;
   std::mt19937_64 random_;
 };
 

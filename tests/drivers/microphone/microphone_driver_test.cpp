@@ -90,7 +90,7 @@ TEST_F(MicrophoneFault, Freeze) {
   sink().readings.clear();
   sink().refusals.clear();
   rig_.next_speed_m_s(4);
-  const auto [slowest, fastest] = std::ranges::minmax(sink().readings, {}, &wind::WindReading::speed_m_s);
+  const auto [slowest, fastest] = std::ranges::minmax(sink().readings, {}, &wind::Reading::speed_m_s);
   EXPECT_LT(fastest.speed_m_s - slowest.speed_m_s, 0.15 * usual_m_s_) << "the same second again and again";
   EXPECT_EQ(sink().last_state(), wind::LinkState::kConnected);
   EXPECT_TRUE(sink().refusals.empty());
@@ -111,7 +111,7 @@ TEST_F(MicrophoneFault, Garbage) {
   sink().readings.clear();
   simulator_.suffer("garbage");
   EXPECT_TRUE(rig_.wait_until([&] { return sink().count(decode::Refusal::kImplausible) >= 4; }));
-  for (const wind::WindReading& reading : sink().readings) EXPECT_LT(reading.speed_m_s, 1.5 * usual_m_s_);
+  for (const wind::Reading& reading : sink().readings) EXPECT_LT(reading.speed_m_s, 1.5 * usual_m_s_);
   EXPECT_EQ(sink().last_state(), wind::LinkState::kConnecting);
   EXPECT_THAT(sink().last_detail(), HasSubstr("noise at full scale"));
   expect_no_reading_for(1500ms);

@@ -70,7 +70,7 @@ class MicrophoneSensorTest : public testing::Test {
     hello_.device = "windmic";
   }
 
-  MicrophoneSensor& sensor() {
+  Sensor& sensor() {
     if (!sensor_) {
       settings_.estimator.noise_floor_db = -120.0;
       sensor_.emplace(settings_, 1, std::make_unique<PlayedPort>(port_, clock_));
@@ -92,14 +92,14 @@ class MicrophoneSensorTest : public testing::Test {
   }
   void poll() { clock_.advance_to(sensor().poll(clock_, sink_)); }
 
-  MicrophoneSettings settings_{.is_calibrated = true};
+  Settings settings_{.is_calibrated = true};
   ManualClock clock_;
   RecordingSink sink_;
   PlayedPort::Played port_;
   decode::microphone::MicHello hello_;
   std::vector<decode::microphone::MicBlock> blocks_;
   std::size_t next_block_ = 0;
-  std::optional<MicrophoneSensor> sensor_;
+  std::optional<Sensor> sensor_;
 };
 
 class MicrophoneFault : public MicrophoneSensorTest {};
@@ -110,7 +110,7 @@ TEST_F(MicrophoneSensorTest, PublishesAReadingABlockOnceAWindowIsFull) {
   send_blocks(12);
   hear();
   ASSERT_EQ(sink_.readings.size(), 9U);
-  for (const wind::WindReading& reading : sink_.readings) {
+  for (const wind::Reading& reading : sink_.readings) {
     EXPECT_NEAR(reading.speed_m_s, 2.5, 0.6);
     EXPECT_EQ(reading.quality, wind::ReadingQuality::kGood);
     EXPECT_FALSE(reading.direction_deg);

@@ -25,7 +25,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-using Kind = ModbusTrouble::Kind;
+using Kind = Trouble::Kind;
 
 constexpr auto kHang = 60s;  // so long waits only who waits for something that hangs
 
@@ -42,24 +42,24 @@ class HeldConnection final : public bus::ModbusConnection {
                      const bus::Interruption&) override {
     return 0;
   }
-  bool send(const decode::modbus::ModbusRequest& request, const bus::ModbusPatience&) override {
+  bool send(const decode::modbus::Request& request, const bus::ModbusPatience&) override {
     const std::lock_guard lock(mutex_);
     requested_.push_back(request);
     requested_at_.push_back(std::chrono::steady_clock::now());
     changed_.notify_all();
     return true;
   }
-  bus::BusMessage receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
-                          const bus::Interruption& interruption) override {
+  bus::Message receive(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
+                       const bus::Interruption& interruption) override {
     if (interruption.wait(may_reply_.get(), bus::WaitFor::kReadable, kHang) != bus::WaitEnd::kReady) {
-      return {bus::BusStatus::kInterrupted};
+      return {bus::Status::kInterrupted};
     }
     eventfd_t one = 0;
     eventfd_read(may_reply_.get(), &one);
     const std::lock_guard lock(mutex_);
     const auto bytes = reply_with(requested_.back(), {86});
     std::ranges::copy(bytes, buffer.begin());
-    return {bus::BusStatus::kMessage, bytes.size()};
+    return {bus::Status::kMessage, bytes.size()};
   }
 
   void let_reply(int count) { eventfd_write(may_reply_.get(), static_cast<eventfd_t>(count)); }
@@ -70,7 +70,7 @@ class HeldConnection final : public bus::ModbusConnection {
   std::vector<int> requested_units() {
     const std::lock_guard lock(mutex_);
     std::vector<int> units;
-    for (const decode::modbus::ModbusRequest& request : requested_) units.push_back(request.unit);
+    for (const decode::modbus::Request& request : requested_) units.push_back(request.unit);
     return units;
   }
   std::vector<std::chrono::steady_clock::time_point> requested_at() {
@@ -83,7 +83,7 @@ class HeldConnection final : public bus::ModbusConnection {
   std::condition_variable changed_;
   bool is_open_ = false;
   Descriptor may_reply_{eventfd(0, EFD_CLOEXEC | EFD_SEMAPHORE)};
-  std::vector<decode::modbus::ModbusRequest> requested_;
+  std::vector<decode::modbus::Request> requested_;
   std::vector<std::chrono::steady_clock::time_point> requested_at_;
 };
 
@@ -99,13 +99,13 @@ class ModbusBusTest : public testing::Test {
   struct Caller {
     bus::Interruption interruption;
     RecordingSink sink;
-    std::optional<ModbusBus::Reply> reply;
+    std::optional<Bus::Reply> reply;
     std::thread thread;
   };
   ModbusBusTest() {
     auto connection = std::make_unique<HeldConnection>();
     connection_ = connection.get();
-    bus_ = std::make_unique<ModbusBus>(line_named("held"), std::move(connection));
+    bus_ = std::make_unique<Bus>(line_named("held"), std::move(connection));
     const bus::Interruption interruption;
     EXPECT_TRUE(bus_->open(interruption, clock_));
   }
@@ -130,7 +130,7 @@ class ModbusBusTest : public testing::Test {
 
   daemon::sensing::SystemClock clock_;
   HeldConnection* connection_ = nullptr;
-  std::unique_ptr<ModbusBus> bus_;
+  std::unique_ptr<Bus> bus_;
   std::vector<std::unique_ptr<Caller>> callers_;
 };
 
@@ -199,50 +199,48 @@ TEST_F(ModbusBusTest, EndsAWaitForTheGapToo) {
 class ModbusBusByHandTest : public testing::Test {
  protected:
   ModbusBusByHandTest() {
-    line_.statuses = [this](const decode::modbus::ModbusRequest&) { return std::deque{status_}; };
-    line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {86}); };
+    line_.statuses = [this](const decode::modbus::Request&) { return std::deque{status_}; };
+    line_.message = [](const decode::modbus::Request& request) { return reply_with(request, {86}); };
   }
-  void make(decode::modbus::ModbusFraming framing) {
+  void make(decode::modbus::Framing framing) {
     bus::ModbusLine line = line_named("fake");
     line.framing = framing;
     line.device = "fake";
-    bus_ = std::make_unique<ModbusBus>(line, std::make_unique<FakeConnection>(line_));
+    bus_ = std::make_unique<Bus>(line, std::make_unique<FakeConnection>(line_));
     ASSERT_TRUE(bus_->open(interruption_, clock_));
   }
-  ModbusBus::Reply exchange(std::uint8_t unit) {
-    return bus_->exchange({.unit = unit}, {}, interruption_, clock_, sink_);
-  }
+  Bus::Reply exchange(std::uint8_t unit) { return bus_->exchange({.unit = unit}, {}, interruption_, clock_, sink_); }
 
   FakeLine line_;
-  bus::BusStatus status_ = bus::BusStatus::kMessage;
+  bus::Status status_ = bus::Status::kMessage;
   ManualClock clock_;
   bus::Interruption interruption_;
   RecordingSink sink_;
-  std::unique_ptr<ModbusBus> bus_;
+  std::unique_ptr<Bus> bus_;
 };
 
 TEST_F(ModbusBusByHandTest, LetsASilentSlaveOfASerialLineBeForOneTimeOutMore) {
-  make(decode::modbus::ModbusFraming::kRtu);
-  status_ = bus::BusStatus::kSilence;
+  make(decode::modbus::Framing::kRtu);
+  status_ = bus::Status::kSilence;
   exchange(5);
   EXPECT_EQ(bus_->ready_at(5), clock_.now().mono + 500ms);
   EXPECT_LE(bus_->ready_at(6), clock_.now().mono);
 }
 
 TEST_F(ModbusBusByHandTest, NeedNotWaitOverTcpWhereALateAnswerIsKnownByItsNumber) {
-  make(decode::modbus::ModbusFraming::kTcp);
-  status_ = bus::BusStatus::kSilence;
+  make(decode::modbus::Framing::kTcp);
+  status_ = bus::Status::kSilence;
   exchange(5);
   EXPECT_LE(bus_->ready_at(5), clock_.now().mono);
 }
 
 TEST_F(ModbusBusByHandTest, LetsTheLineSettleAfterTroubleAndNotAfterAnAnswer) {
-  make(decode::modbus::ModbusFraming::kTcp);
+  make(decode::modbus::Framing::kTcp);
   exchange(1);
   EXPECT_EQ(line_.settled, 1);  // it had just been opened
   exchange(1);
   EXPECT_EQ(line_.settled, 1);
-  status_ = bus::BusStatus::kSilence;
+  status_ = bus::Status::kSilence;
   exchange(1);
   EXPECT_EQ(line_.settled, 1);
   exchange(1);
@@ -250,9 +248,9 @@ TEST_F(ModbusBusByHandTest, LetsTheLineSettleAfterTroubleAndNotAfterAnAnswer) {
 }
 
 TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
-  make(decode::modbus::ModbusFraming::kTcp);
-  line_.statuses = [](const decode::modbus::ModbusRequest& request) {
-    return std::deque{request.unit == 1 ? bus::BusStatus::kMessage : bus::BusStatus::kSilence};
+  make(decode::modbus::Framing::kTcp);
+  line_.statuses = [](const decode::modbus::Request& request) {
+    return std::deque{request.unit == 1 ? bus::Status::kMessage : bus::Status::kSilence};
   };
   for (int i = 0; i < 10; ++i) {
     exchange(1);
@@ -263,7 +261,7 @@ TEST_F(ModbusBusByHandTest, IsNotClosedForOneDeadSlaveWhileAnotherAnswers) {
 }
 
 TEST_F(ModbusBusByHandTest, ShowsEachMessageThatWentOrCame) {
-  make(decode::modbus::ModbusFraming::kTcp);
+  make(decode::modbus::Framing::kTcp);
   exchange(7);
   ASSERT_EQ(sink_.raws.size(), 2U);
   EXPECT_EQ(sink_.raws[0].direction, sensor::RawDirection::kSent);
@@ -277,7 +275,7 @@ TEST(SharedModbusBus, IsOneForAllNamesOfALineForAsLongAsSomebodyHoldsIt) {
   const std::string link = folder / "stable-name";
   std::filesystem::create_symlink("/dev/null", link);
   bus::ModbusLine by_link;
-  by_link.framing = decode::modbus::ModbusFraming::kRtu;
+  by_link.framing = decode::modbus::Framing::kRtu;
   by_link.device = link;
   bus::ModbusLine by_node = by_link;
   by_node.device = "/dev/null";

@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
-using Kind = ModbusTrouble::Kind;
+using Kind = Trouble::Kind;
 
 const Bytes kLate = {0x01, 0x03, 0x02, 0x00, 0x57, 0xF9, 0xBA};   // 87
 const Bytes kRight = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};  // 86
@@ -28,7 +28,7 @@ class ModbusLateAnswerTest : public testing::Test {
  protected:
   ModbusLateAnswerTest() {
     bus::ModbusLine line;
-    line.framing = decode::modbus::ModbusFraming::kRtu;
+    line.framing = decode::modbus::Framing::kRtu;
     line.device = port_.device();
     bus_ = shared_modbus_bus(line);
     EXPECT_TRUE(bus_->open(interruption_, clock_));
@@ -49,7 +49,7 @@ class ModbusLateAnswerTest : public testing::Test {
     return true;
   }
 
-  ModbusBus::Reply exchange(Nanoseconds timeout) {
+  Bus::Reply exchange(Nanoseconds timeout) {
     return bus_->exchange({.unit = 1}, {.response_timeout = timeout, .byte_timeout = byte_timeout_}, interruption_,
                           clock_, sink_);
   }
@@ -67,7 +67,7 @@ class ModbusLateAnswerTest : public testing::Test {
   ManualClock clock_;
   bus::Interruption interruption_;
   RecordingSink sink_;
-  std::shared_ptr<ModbusBus> bus_;
+  std::shared_ptr<Bus> bus_;
 };
 
 TEST_F(ModbusLateAnswerTest, ThatIsThereBeforeTheNextRequestIsDroppedAndCounted) {

@@ -9,15 +9,15 @@ namespace yuragi::drivers::modbus {
 namespace {
 
 using testing::ElementsAre;
-using enum ModbusMeasure;
+using enum Measure;
 
 /// Speed at 10, direction at 11, gust at 14, all on slave 1.
-ModbusProfile three_quantities() {
-  ModbusProfile profile;
+Profile three_quantities() {
+  Profile profile;
   profile.speed.address = 10;
-  profile.direction = decode::modbus::ModbusQuantity{};
+  profile.direction = decode::modbus::Quantity{};
   profile.direction->address = 11;
-  profile.gust = decode::modbus::ModbusQuantity{};
+  profile.gust = decode::modbus::Quantity{};
   profile.gust->address = 14;
   return profile;
 }
@@ -33,7 +33,7 @@ TEST(ModbusPlan, ReadsTogetherWhatAdjoinsAndTheRestByItself) {
 }
 
 TEST(ModbusPlan, ReadsAcrossAGapThatTheProfileAllows) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.block_gap = 1;
   EXPECT_EQ(plan_modbus_reads(profile).size(), 2U);
   profile.block_gap = 2;
@@ -43,7 +43,7 @@ TEST(ModbusPlan, ReadsAcrossAGapThatTheProfileAllows) {
 }
 
 TEST(ModbusPlan, BringsTheSpeedFirstWhereverItStands) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.speed.address = 20;
   profile.gust->address = 12;
   const auto reads = plan_modbus_reads(profile);
@@ -54,7 +54,7 @@ TEST(ModbusPlan, BringsTheSpeedFirstWhereverItStands) {
 }
 
 TEST(ModbusPlan, JoinsTwoThatOnlyTheThirdConnects) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.direction->address = 12;  // speed 10, direction 12, gust 11
   profile.gust->address = 11;
   const auto reads = plan_modbus_reads(profile);
@@ -64,26 +64,26 @@ TEST(ModbusPlan, JoinsTwoThatOnlyTheThirdConnects) {
 }
 
 TEST(ModbusPlan, ReadsNothingTogetherThatMayNotBe) {
-  const std::vector<std::function<void(ModbusProfile&)>> obstacles = {
-      [](ModbusProfile& profile) { profile.block_read = false; },
-      [](ModbusProfile& profile) { profile.direction->slave = 2; },
-      [](ModbusProfile& profile) { profile.direction->function = 4; },
-      [](ModbusProfile& profile) { profile.direction->read_has_side_effect = true; },
-      [](ModbusProfile& profile) { profile.speed.read_has_side_effect = true; },
+  const std::vector<std::function<void(Profile&)>> obstacles = {
+      [](Profile& profile) { profile.block_read = false; },
+      [](Profile& profile) { profile.direction->slave = 2; },
+      [](Profile& profile) { profile.direction->function = 4; },
+      [](Profile& profile) { profile.direction->read_has_side_effect = true; },
+      [](Profile& profile) { profile.speed.read_has_side_effect = true; },
   };
   for (const auto& obstacle : obstacles) {
-    ModbusProfile profile = three_quantities();
+    Profile profile = three_quantities();
     obstacle(profile);
     EXPECT_EQ(plan_modbus_reads(profile).size(), 3U);
   }
 }
 
 TEST(ModbusPlan, NeverAsksForMoreThanOneRequestMay) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.block_gap = 100;
   profile.direction->address = 105;
   profile.gust->address = 200;
-  for (const ModbusRead& read : plan_modbus_reads(profile))
+  for (const RegisterRead& read : plan_modbus_reads(profile))
     EXPECT_LE(read.request.count, decode::modbus::kModbusMaxRegisters);
 }
 
@@ -94,14 +94,14 @@ TEST(ModbusPlan, LeavesADirectionOnItsOwnLineToItself) {
 }
 
 /// A quantity of a station in this register of slave 1.
-ModbusStationQuantity station_at(std::uint16_t address) {
-  ModbusStationQuantity station;
+StationQuantity station_at(std::uint16_t address) {
+  StationQuantity station;
   station.quantity.address = address;
   return station;
 }
 
 TEST(ModbusPlan, ReadsTheOtherQuantitiesAlongWithTheWindWhereTheyAdjoinAndTheRestLast) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.quantities = {station_at(40), station_at(12), station_at(41), station_at(13)};
   const auto reads = plan_modbus_reads(profile);
   ASSERT_EQ(reads.size(), 2U);
@@ -117,7 +117,7 @@ TEST(ModbusPlan, ReadsTheOtherQuantitiesAlongWithTheWindWhereTheyAdjoinAndTheRes
 }
 
 TEST(ModbusPlan, ReadsADirectionOnItsOwnLineBeforeTheOtherQuantities) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.quantities = {station_at(40)};
   const auto reads = plan_modbus_reads(profile, true);
   ASSERT_EQ(reads.size(), 4U);
@@ -126,17 +126,17 @@ TEST(ModbusPlan, ReadsADirectionOnItsOwnLineBeforeTheOtherQuantities) {
 }
 
 TEST(ModbusPlan, ReadsAQuantityWithSideEffectsAlone) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.quantities = {station_at(12)};
   profile.quantities[0].quantity.read_has_side_effect = true;
   EXPECT_EQ(plan_modbus_reads(profile).size(), 3U);
 }
 
 TEST(ModbusPlan, FindsEachQuantityInTheAnswer) {
-  ModbusProfile profile = three_quantities();
+  Profile profile = three_quantities();
   profile.block_gap = 2;
-  const ModbusRead read = plan_modbus_reads(profile).front();
-  decode::modbus::ModbusRegisters registers;
+  const RegisterRead read = plan_modbus_reads(profile).front();
+  decode::modbus::Registers registers;
   registers.values = {1, 2, 3, 4, 5};
   registers.count = 5;
   EXPECT_EQ(registers_of(quantity_of(profile, kSpeed), read.request, registers)[0], 1);

@@ -38,7 +38,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(ModbusProfile, OfTheRenkePairIsWhatItsRegisterMapSays) {
-  const ModbusProfile profile = load_modbus_profile("renke-rs-fsjt-rs-fxjt-n01", kProfileDirectory);
+  const Profile profile = load_modbus_profile("renke-rs-fsjt-rs-fxjt-n01", kProfileDirectory);
   EXPECT_TRUE(profile.is_serial);
   EXPECT_EQ(profile.baud, 4800);
   EXPECT_EQ(profile.parity, 'N');
@@ -92,7 +92,7 @@ TEST(ModbusProfile, ThatIsShippedCanBeRead) {
 }
 
 TEST(ModbusProfile, ReadsEveryField) {
-  const ModbusProfile profile = parse_modbus_profile(R"(
+  const Profile profile = parse_modbus_profile(R"(
 name = "n"
 source = "s"
 confirmed_by = ["recording", "decoder"]
@@ -156,7 +156,7 @@ slave = 17
 address = 40008
 type = "u16"
 )",
-                                                     "device.toml");
+                                               "device.toml");
   EXPECT_EQ(profile.confirmed_by, (std::vector{ProfileEvidence::kRecording, ProfileEvidence::kDecoder}));
   EXPECT_EQ(profile.unconfirmed, "the id");
   EXPECT_EQ(profile.revision, "V2");
@@ -250,11 +250,11 @@ TEST(ModbusProfile, KnowsNoOtherQuantitiesThanRecordings) {
 }
 
 TEST(ModbusProfile, ThatIsMovedToAnotherSlaveTakesAlongWhatWasOnTheSame) {
-  ModbusProfile profile;
-  profile.direction = decode::modbus::ModbusQuantity{};
+  Profile profile;
+  profile.direction = decode::modbus::Quantity{};
   profile.direction->slave = 2;
-  profile.gust = decode::modbus::ModbusQuantity{};
-  profile.beaufort = decode::modbus::ModbusQuantity{};
+  profile.gust = decode::modbus::Quantity{};
+  profile.beaufort = decode::modbus::Quantity{};
   profile.quantities.resize(2);
   profile.quantities[1].quantity.slave = 2;
   set_slave(profile, 7);

@@ -26,14 +26,14 @@ struct ProfileReading {
   wind::StationQuantities quantities;
 };
 
-ModbusProfile shipped_profile(const std::string& name) {
+Profile shipped_profile(const std::string& name) {
   return load_modbus_profile(name, test::source_path("drivers/modbus/profiles"));
 }
 
 /// Registers as a request brings them; nothing if the device lacks one.
-std::optional<decode::modbus::ModbusRegisters> answer_of(const DeviceRegisters& device,
-                                                         const decode::modbus::ModbusRequest& request) {
-  decode::modbus::ModbusRegisters registers;
+std::optional<decode::modbus::Registers> answer_of(const DeviceRegisters& device,
+                                                   const decode::modbus::Request& request) {
+  decode::modbus::Registers registers;
   for (int i = 0; i < request.count; ++i) {
     const auto found = device.find(request.address + i);
     if (found == device.end()) return std::nullopt;
@@ -42,21 +42,20 @@ std::optional<decode::modbus::ModbusRegisters> answer_of(const DeviceRegisters& 
   return registers;
 }
 
-ProfileReading read_with(const ModbusProfile& profile, const DeviceRegisters& device) {
+ProfileReading read_with(const Profile& profile, const DeviceRegisters& device) {
   ProfileReading reading;
-  for (const ModbusRead& read : plan_modbus_reads(profile)) {
+  for (const RegisterRead& read : plan_modbus_reads(profile)) {
     const auto registers = answer_of(device, read.request);
     if (!registers) continue;
-    for (const ModbusMeasure measure : read.measures) {
-      const decode::modbus::ModbusQuantity& quantity = quantity_of(profile, measure);
+    for (const Measure measure : read.measures) {
+      const decode::modbus::Quantity& quantity = quantity_of(profile, measure);
       const auto part = registers_of(quantity, read.request, *registers);
-      if (measure == ModbusMeasure::kSpeed) reading.speed_m_s = decode::modbus::decode_speed_m_s(quantity, part);
-      if (measure == ModbusMeasure::kGust) reading.gust_m_s = decode::modbus::decode_speed_m_s(quantity, part);
-      if (measure == ModbusMeasure::kDirection)
-        reading.direction_deg = decode::modbus::decode_direction_deg(quantity, part);
+      if (measure == Measure::kSpeed) reading.speed_m_s = decode::modbus::decode_speed_m_s(quantity, part);
+      if (measure == Measure::kGust) reading.gust_m_s = decode::modbus::decode_speed_m_s(quantity, part);
+      if (measure == Measure::kDirection) reading.direction_deg = decode::modbus::decode_direction_deg(quantity, part);
     }
     for (const std::size_t i : read.stations) {
-      const ModbusStationQuantity& station = profile.quantities[i];
+      const StationQuantity& station = profile.quantities[i];
       const auto value =
           decode::modbus::decode_number(station.quantity, registers_of(station.quantity, read.request, *registers));
       if (value) reading.quantities.*station.what.value = *value;
@@ -199,7 +198,7 @@ class ShippedProfileTest : public testing::TestWithParam<KnownReading> {};
 
 TEST_P(ShippedProfileTest, ReadsWhatTheRegistersSay) {
   const KnownReading& known = GetParam();
-  const ModbusProfile profile = shipped_profile(known.profile);
+  const Profile profile = shipped_profile(known.profile);
   EXPECT_EQ(profile.speed.function, known.function);
   EXPECT_EQ(profile.direction.has_value(), known.direction_deg.has_value());
   EXPECT_EQ(profile.gust.has_value(), known.gust_m_s.has_value());
@@ -228,7 +227,7 @@ TEST(ShippedProfiles, AreAllTestedAndSayWhereTheyWereRead) {
   for (const auto& entry : std::filesystem::directory_iterator(test::source_path("drivers/modbus/profiles"))) {
     if (entry.path().extension() != ".toml") continue;
     shipped.insert(entry.path().stem().string());
-    const ModbusProfile profile = load_modbus_profile(entry.path().string(), "");
+    const Profile profile = load_modbus_profile(entry.path().string(), "");
     EXPECT_GT(profile.source.size(), 10U) << entry.path();
     EXPECT_FALSE(profile.confirmed_by.empty()) << entry.path();
     EXPECT_TRUE(profile.speed.max.has_value()) << entry.path();
@@ -257,13 +256,13 @@ TEST(ShippedProfiles, TakeTheMarksForNoValueAsNone) {
 TEST(ShippedProfiles, ReadTheLeastSignificantWordOfAWm80First) {
   // 5.5 m/s from 90.5 degrees in the other order: the profile shall not find a wind in it.
   const DeviceRegisters swapped = {{0, 0x40B0}, {1, 0}, {2, 0x42B5}, {3, 0}};
-  ModbusProfile wm80 = shipped_profile("vaisala-wm80");
+  Profile wm80 = shipped_profile("vaisala-wm80");
   wm80.gust.reset();
   EXPECT_LT(*read_with(wm80, swapped).speed_m_s, 1e-30);
 }
 
 TEST(ShippedProfiles, FindALambrechtsCupAndVaneOnSlavesOfTheirOwn) {
-  const ModbusProfile lambrecht = shipped_profile("lambrecht-industry");
+  const Profile lambrecht = shipped_profile("lambrecht-industry");
   EXPECT_EQ(lambrecht.speed.slave, 1);
   EXPECT_EQ(lambrecht.direction->slave, 2);
   EXPECT_EQ(lambrecht.baud, 19200);
@@ -324,7 +323,7 @@ TEST(ShippedProfiles, ReadAPublishedFrameOfAWs85) {
 }
 
 TEST(ShippedProfiles, NeverReadARegisterThatClearsOthers) {
-  for (const ModbusRead& read : plan_modbus_reads(shipped_profile("lambrecht-industry"))) {
+  for (const RegisterRead& read : plan_modbus_reads(shipped_profile("lambrecht-industry"))) {
     for (const int clearing : {30002, 30202}) {
       EXPECT_FALSE(clearing >= read.request.address && clearing < read.request.address + read.request.count);
     }
@@ -370,7 +369,7 @@ TEST(ShippedProfiles, ReadTheSharedCollectionsFramesAsItSays) {
 
   // The frame of the WM80 was made with its words the wrong way round, and ends before the gust, which this profile
   // reads along.
-  ModbusProfile wm80 = shipped_profile("vaisala-wm80");
+  Profile wm80 = shipped_profile("vaisala-wm80");
   wm80.gust.reset();
   const auto found = std::ranges::find(vectors, "Vaisala WM80", &ModbusVector::device);
   ASSERT_NE(found, vectors.end());

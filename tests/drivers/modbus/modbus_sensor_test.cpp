@@ -17,13 +17,13 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// Cup on slave 1, vane on slave 2, asked four times a second.
-ModbusProfile pair_profile() {
-  ModbusProfile profile;
+Profile pair_profile() {
+  Profile profile;
   profile.name = "pair";
   profile.poll_interval = 250ms;
   profile.min_gap = 20ms;
   profile.speed.scale = 0.1;
-  profile.direction = decode::modbus::ModbusQuantity{};
+  profile.direction = decode::modbus::Quantity{};
   profile.direction->slave = 2;
   profile.direction->address = 1;
   profile.direction->unit = decode::modbus::QuantityUnit::kDegrees;
@@ -33,17 +33,17 @@ ModbusProfile pair_profile() {
 class ModbusSensorTest : public testing::Test {
  protected:
   ModbusSensorTest() {
-    line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kMessage}; };
-    line_.message = [](const decode::modbus::ModbusRequest& request) {
+    line_.statuses = [](const decode::modbus::Request&) { return std::deque{bus::Status::kMessage}; };
+    line_.message = [](const decode::modbus::Request& request) {
       return reply_with(request, {static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270)});
     };
   }
 
-  void make(const ModbusProfile& profile) {
+  void make(const Profile& profile) {
     bus::ModbusLine where;
     where.host = "here";
-    auto bus = std::make_shared<ModbusBus>(where, std::make_unique<FakeConnection>(line_));
-    sensor_ = std::make_unique<ModbusSensor>(profile, std::move(bus), nullptr, 1);
+    auto bus = std::make_shared<Bus>(where, std::make_unique<FakeConnection>(line_));
+    sensor_ = std::make_unique<Sensor>(profile, std::move(bus), nullptr, 1);
   }
   /// Polls once, when it is due.
   Nanoseconds poll() {
@@ -59,7 +59,7 @@ class ModbusSensorTest : public testing::Test {
   FakeLine line_;
   ManualClock clock_;
   RecordingSink sink_;
-  std::unique_ptr<ModbusSensor> sensor_;
+  std::unique_ptr<Sensor> sensor_;
   MonoTime due_{};
 };
 
@@ -115,11 +115,11 @@ TEST_F(ModbusSensorTest, GivesEachRequestATransactionOfItsOwn) {
 
 TEST_F(ModbusSensorTest, PassesOverALateAnswerAndTakesTheRightOne) {
   make(pair_profile());
-  line_.statuses = [](const decode::modbus::ModbusRequest&) {
-    return std::deque{bus::BusStatus::kMessage, bus::BusStatus::kMessage};
+  line_.statuses = [](const decode::modbus::Request&) {
+    return std::deque{bus::Status::kMessage, bus::Status::kMessage};
   };
   bool is_late = true;
-  line_.message = [&is_late](decode::modbus::ModbusRequest request) {
+  line_.message = [&is_late](decode::modbus::Request request) {
     std::vector<std::uint16_t> registers = {86};
     if (std::exchange(is_late, !is_late)) {
       --request.transaction;
@@ -127,7 +127,7 @@ TEST_F(ModbusSensorTest, PassesOverALateAnswerAndTakesTheRightOne) {
     }
     return reply_with(request, registers);
   };
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.direction.reset();
   make(profile);
   poll();
@@ -139,7 +139,7 @@ TEST_F(ModbusSensorTest, PassesOverALateAnswerAndTakesTheRightOne) {
 
 TEST_F(ModbusSensorTest, CountsAnAnswerOfAnotherSlaveOnceAndNotItsSilenceBesides) {
   make(pair_profile());
-  line_.message = [](decode::modbus::ModbusRequest request) {
+  line_.message = [](decode::modbus::Request request) {
     request.unit = 9;
     return reply_with(request, {86});
   };
@@ -151,14 +151,14 @@ TEST_F(ModbusSensorTest, CountsAnAnswerOfAnotherSlaveOnceAndNotItsSilenceBesides
 }
 
 TEST_F(ModbusSensorTest, CountsEachFailureAsWhatItIsAndPublishesNothing) {
-  const std::vector<std::pair<bus::BusStatus, decode::Refusal>> failures = {
-      {bus::BusStatus::kSilence, decode::Refusal::kTimeout},
-      {bus::BusStatus::kCutOff, decode::Refusal::kTooShort},
-      {bus::BusStatus::kGarbled, decode::Refusal::kMalformed}};
+  const std::vector<std::pair<bus::Status, decode::Refusal>> failures = {
+      {bus::Status::kSilence, decode::Refusal::kTimeout},
+      {bus::Status::kCutOff, decode::Refusal::kTooShort},
+      {bus::Status::kGarbled, decode::Refusal::kMalformed}};
   for (const auto& [status, why] : failures) {
     make(pair_profile());
     sink_ = {};
-    line_.statuses = [one = status](const decode::modbus::ModbusRequest&) { return std::deque{one}; };
+    line_.statuses = [one = status](const decode::modbus::Request&) { return std::deque{one}; };
     poll();
     poll();
     EXPECT_THAT(sink_.refusals, ElementsAre(why));
@@ -169,7 +169,7 @@ TEST_F(ModbusSensorTest, CountsEachFailureAsWhatItIsAndPublishesNothing) {
 
 TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
   make(pair_profile());
-  line_.message = [](const decode::modbus::ModbusRequest& request) {
+  line_.message = [](const decode::modbus::Request& request) {
     auto bytes = reply_with(request, {});
     bytes[7] = 0x83;
     bytes[8] = 2;
@@ -185,7 +185,7 @@ TEST_F(ModbusSensorTest, SaysWhichExceptionAndWhatToDo) {
 
 TEST_F(ModbusSensorTest, RefusesAnImplausibleSpeedAndAsksNoDirectionForIt) {
   make(pair_profile());
-  line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {9999}); };
+  line_.message = [](const decode::modbus::Request& request) { return reply_with(request, {9999}); };
   poll();
   poll();
   EXPECT_THAT(sink_.refusals, ElementsAre(decode::Refusal::kImplausible));
@@ -195,13 +195,13 @@ TEST_F(ModbusSensorTest, RefusesAnImplausibleSpeedAndAsksNoDirectionForIt) {
 
 TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhileTheVaneIsSilentAndAsksItLessOften) {
   make(pair_profile());
-  line_.statuses = [](const decode::modbus::ModbusRequest& request) {
-    return request.unit == 1 ? std::deque{bus::BusStatus::kMessage} : std::deque<bus::BusStatus>{};
+  line_.statuses = [](const decode::modbus::Request& request) {
+    return request.unit == 1 ? std::deque{bus::Status::kMessage} : std::deque<bus::Status>{};
   };
   poll_for(60s);
   EXPECT_GE(sink_.readings.size(), 235U);
-  for (const wind::WindReading& reading : sink_.readings) EXPECT_FALSE(reading.direction_deg.has_value());
-  const auto vane_requests = std::ranges::count(line_.requests, 2, &decode::modbus::ModbusRequest::unit);
+  for (const wind::Reading& reading : sink_.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+  const auto vane_requests = std::ranges::count(line_.requests, 2, &decode::modbus::Request::unit);
   EXPECT_EQ(sink_.count(decode::Refusal::kTimeout), vane_requests);
   EXPECT_GE(vane_requests, 6);
   EXPECT_LE(vane_requests, 15);
@@ -212,8 +212,8 @@ TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhileTheVaneIsSilentAndAsksItLess
 TEST_F(ModbusSensorTest, HasTheDirectionAgainWhenTheVaneIsBack) {
   make(pair_profile());
   bool vane_replies = false;
-  line_.statuses = [&](const decode::modbus::ModbusRequest& request) {
-    return request.unit == 1 || vane_replies ? std::deque{bus::BusStatus::kMessage} : std::deque<bus::BusStatus>{};
+  line_.statuses = [&](const decode::modbus::Request& request) {
+    return request.unit == 1 || vane_replies ? std::deque{bus::Status::kMessage} : std::deque<bus::Status>{};
   };
   poll_for(30s);
   vane_replies = true;
@@ -223,7 +223,7 @@ TEST_F(ModbusSensorTest, HasTheDirectionAgainWhenTheVaneIsBack) {
 }
 
 TEST_F(ModbusSensorTest, PublishesTheSpeedAloneWhereTheDirectionIsInvalid) {
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.direction->invalid = {270};
   make(profile);
   poll_for(1s);
@@ -254,7 +254,7 @@ TEST_F(ModbusSensorTest, TriesToOpenForEverWithWaitsThatGrowTo10Seconds) {
 
 TEST_F(ModbusSensorTest, OpensAgainAfterThreeSilentRequestsInARow) {
   make(pair_profile());
-  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque<bus::BusStatus>{}; };
+  line_.statuses = [](const decode::modbus::Request&) { return std::deque<bus::Status>{}; };
   for (int i = 0; i < 4; ++i) poll();
   EXPECT_EQ(line_.opened, 1);
   poll();
@@ -265,10 +265,10 @@ TEST_F(ModbusSensorTest, OpensAgainAfterThreeSilentRequestsInARow) {
 TEST_F(ModbusSensorTest, OpensAgainWhenTheConnectionIsLostAndPublishesOn) {
   make(pair_profile());
   poll_for(1s);
-  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kLost}; };
+  line_.statuses = [](const decode::modbus::Request&) { return std::deque{bus::Status::kLost}; };
   poll();
   EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
-  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kMessage}; };
+  line_.statuses = [](const decode::modbus::Request&) { return std::deque{bus::Status::kMessage}; };
   const auto before = sink_.readings.size();
   poll_for(1s);
   EXPECT_EQ(line_.opened, 2);
@@ -278,14 +278,14 @@ TEST_F(ModbusSensorTest, OpensAgainWhenTheConnectionIsLostAndPublishesOn) {
 
 TEST_F(ModbusSensorTest, ReopeningAServerThatOnlyAcceptsGetsRarer) {
   make(pair_profile());
-  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque{bus::BusStatus::kLost}; };
+  line_.statuses = [](const decode::modbus::Request&) { return std::deque{bus::Status::kLost}; };
   poll_for(60s);
   EXPECT_LE(line_.opened, 13);
   EXPECT_GE(line_.opened, 9);
 }
 
 TEST_F(ModbusSensorTest, WaitsAfterOpeningAndBelievesNothingUntilTheDeviceIsWarm) {
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.delay_after_open = 2s;
   profile.warm_up = 10s;
   make(profile);
@@ -301,10 +301,10 @@ TEST_F(ModbusSensorTest, WaitsAfterOpeningAndBelievesNothingUntilTheDeviceIsWarm
 }
 
 TEST_F(ModbusSensorTest, ReadsAdjoiningRegistersOfOneSlaveAtOnce) {
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.direction->slave = 1;
   make(profile);
-  line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {86, 270}); };
+  line_.message = [](const decode::modbus::Request& request) { return reply_with(request, {86, 270}); };
   poll();
   poll();
   ASSERT_EQ(line_.requests.size(), 1U);
@@ -316,13 +316,13 @@ TEST_F(ModbusSensorTest, ReadsAdjoiningRegistersOfOneSlaveAtOnce) {
 }
 
 TEST_F(ModbusSensorTest, ReadsABlockThatBeginsWithTheDirection) {
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.direction->slave = 1;
   profile.direction->address = 2;
   profile.speed.address = 3;
   profile.speed.type = decode::modbus::RegisterType::kU32;
   make(profile);
-  line_.message = [](const decode::modbus::ModbusRequest& request) { return reply_with(request, {270, 0, 86}); };
+  line_.message = [](const decode::modbus::Request& request) { return reply_with(request, {270, 0, 86}); };
   poll();
   poll();
   ASSERT_EQ(line_.requests.size(), 1U);
@@ -334,15 +334,15 @@ TEST_F(ModbusSensorTest, ReadsABlockThatBeginsWithTheDirection) {
 }
 
 TEST_F(ModbusSensorTest, ReadsOneByOneWhereABlockIsNotAllowedOrPossible) {
-  const std::vector<std::function<void(ModbusProfile&)>> obstacles = {
-      [](ModbusProfile& profile) { profile.block_read = false; },
-      [](ModbusProfile& profile) { profile.speed.read_has_side_effect = true; },
-      [](ModbusProfile& profile) { profile.direction->read_has_side_effect = true; },
-      [](ModbusProfile& profile) { profile.direction->function = 4; },
-      [](ModbusProfile& profile) { profile.direction->address = 2; },
+  const std::vector<std::function<void(Profile&)>> obstacles = {
+      [](Profile& profile) { profile.block_read = false; },
+      [](Profile& profile) { profile.speed.read_has_side_effect = true; },
+      [](Profile& profile) { profile.direction->read_has_side_effect = true; },
+      [](Profile& profile) { profile.direction->function = 4; },
+      [](Profile& profile) { profile.direction->address = 2; },
   };
   for (const auto& obstacle : obstacles) {
-    ModbusProfile profile = pair_profile();
+    Profile profile = pair_profile();
     profile.direction->slave = 1;
     obstacle(profile);
     make(profile);
@@ -358,7 +358,7 @@ TEST_F(ModbusSensorTest, ReadsOneByOneWhereABlockIsNotAllowedOrPossible) {
 
 TEST_F(ModbusSensorTest, AddsTheNorthOffsetAroundTheCircle) {
   for (const auto& [offset_deg, expected_deg] : {std::pair{100.0, 10.0}, {-280.0, 350.0}, {90.0, 0.0}}) {
-    ModbusProfile profile = pair_profile();
+    Profile profile = pair_profile();
     profile.north_offset_deg = offset_deg;
     make(profile);
     poll_for(1s);
@@ -377,12 +377,12 @@ TEST_F(ModbusSensorTest, CountsNothingForARequestThatWasInterrupted) {
 
 TEST_F(ModbusSensorTest, PublishesAGustThatComesAlongOrByItself) {
   for (const std::uint16_t address : {std::uint16_t{1}, std::uint16_t{40}}) {
-    ModbusProfile profile = pair_profile();
+    Profile profile = pair_profile();
     profile.gust = profile.speed;
     profile.gust->address = address;
     make(profile);
     sink_ = {};
-    line_.message = [](const decode::modbus::ModbusRequest& request) {
+    line_.message = [](const decode::modbus::Request& request) {
       std::vector<std::uint16_t> registers(request.count, static_cast<std::uint16_t>(request.unit == 1 ? 86 : 270));
       if (request.unit == 1 && (request.count == 2 || request.address == 40)) registers.back() = 121;
       return reply_with(request, registers);
@@ -397,7 +397,7 @@ TEST_F(ModbusSensorTest, PublishesAGustThatComesAlongOrByItself) {
 }
 
 TEST_F(ModbusSensorTest, GoesOnWithoutAGustThatIsNoneAndSaysSo) {
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.gust = profile.speed;
   profile.gust->address = 40;
   profile.gust->max = 5.0;
@@ -411,18 +411,18 @@ TEST_F(ModbusSensorTest, GoesOnWithoutAGustThatIsNoneAndSaysSo) {
 
 TEST_F(ModbusSensorTest, AsksADeadSpeedSlaveLessAndLessOften) {
   make(pair_profile());
-  line_.statuses = [](const decode::modbus::ModbusRequest&) { return std::deque<bus::BusStatus>{}; };
+  line_.statuses = [](const decode::modbus::Request&) { return std::deque<bus::Status>{}; };
   poll_for(60s);
   EXPECT_GE(line_.requests.size(), 6U);
   EXPECT_LE(line_.requests.size(), 15U);
 }
 
 TEST_F(ModbusSensorTest, KeepsItsPaceThroughNoiseThatLetsAReplyThrough) {
-  ModbusProfile profile = pair_profile();
+  Profile profile = pair_profile();
   profile.direction.reset();
   make(profile);
   bool is_damaged = true;
-  line_.message = [&is_damaged](const decode::modbus::ModbusRequest& request) {
+  line_.message = [&is_damaged](const decode::modbus::Request& request) {
     auto bytes = reply_with(request, {86});
     if (is_damaged) bytes[7] = 4;  // another function
     is_damaged = !is_damaged;
@@ -435,7 +435,7 @@ TEST_F(ModbusSensorTest, KeepsItsPaceThroughNoiseThatLetsAReplyThrough) {
 
 TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
   make(pair_profile());
-  line_.message = [](const decode::modbus::ModbusRequest& request) {
+  line_.message = [](const decode::modbus::Request& request) {
     auto bytes = reply_with(request, {});
     bytes[7] = 0x83;
     bytes[8] = 11;
@@ -449,11 +449,11 @@ TEST_F(ModbusSensorTest, TellsAGatewaysSilentSlaveFromARefusal) {
 TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
   bus::ModbusLine where;
   where.host = "here";
-  auto bus = std::make_shared<ModbusBus>(where, std::make_unique<FakeConnection>(line_));
-  ModbusProfile cup = pair_profile();
+  auto bus = std::make_shared<Bus>(where, std::make_unique<FakeConnection>(line_));
+  Profile cup = pair_profile();
   cup.direction.reset();
-  ModbusSensor one(cup, bus, nullptr, 1);
-  ModbusSensor other(cup, bus, nullptr, 2);
+  Sensor one(cup, bus, nullptr, 1);
+  Sensor other(cup, bus, nullptr, 2);
   RecordingSink other_sink;
   const auto poll_both = [&] {
     clock_.advance(250ms);
@@ -464,8 +464,8 @@ TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
   EXPECT_EQ(line_.opened, 1);
 
   bool loses = true;
-  line_.statuses = [&loses](const decode::modbus::ModbusRequest&) {
-    return std::deque{std::exchange(loses, false) ? bus::BusStatus::kLost : bus::BusStatus::kMessage};
+  line_.statuses = [&loses](const decode::modbus::Request&) {
+    return std::deque{std::exchange(loses, false) ? bus::Status::kLost : bus::Status::kMessage};
   };
   for (int i = 0; i < 8; ++i) poll_both();
   EXPECT_EQ(line_.opened, 2);
@@ -475,15 +475,15 @@ TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
 }
 
 /// A station with the speed in register 10 of slave 1, the humidity beside it, the pressure in 40, every 10 s.
-ModbusProfile station_profile() {
-  ModbusProfile profile;
+Profile station_profile() {
+  Profile profile;
   profile.name = "station";
   profile.poll_interval = 500ms;
   profile.min_gap = 20ms;
   profile.speed.address = 10;
   profile.speed.scale = 0.1;
   const auto add = [&profile](const wind::StationQuantity& what, std::uint16_t address, double scale) {
-    ModbusStationQuantity station{.what = what, .quantity = {}};
+    StationQuantity station{.what = what, .quantity = {}};
     station.quantity.address = address;
     station.quantity.scale = scale;
     station.quantity.invalid = {0xFFFF};
@@ -497,7 +497,7 @@ ModbusProfile station_profile() {
 }
 
 /// Speed 8.6 m/s, humidity 64 %, pressure 1009.2 hPa.
-std::vector<std::uint8_t> station_reply(const decode::modbus::ModbusRequest& request) {
+std::vector<std::uint8_t> station_reply(const decode::modbus::Request& request) {
   if (request.address == 40) return reply_with(request, {10092});
   return reply_with(request, {86, 64});
 }
@@ -533,12 +533,12 @@ TEST_F(ModbusSensorTest, AsksForTheRestOnlyAfterTheWindWasPublished) {
 
 TEST_F(ModbusSensorTest, AsksLessAndLessForWhatAStationDoesNotHave) {
   line_.message = station_reply;
-  line_.statuses = [](const decode::modbus::ModbusRequest& request) {
-    return request.address == 40 ? std::deque<bus::BusStatus>{} : std::deque{bus::BusStatus::kMessage};
+  line_.statuses = [](const decode::modbus::Request& request) {
+    return request.address == 40 ? std::deque<bus::Status>{} : std::deque{bus::Status::kMessage};
   };
   make(station_profile());
   poll_for(1h);
-  const auto asked = std::ranges::count(line_.requests, 40, &decode::modbus::ModbusRequest::address);
+  const auto asked = std::ranges::count(line_.requests, 40, &decode::modbus::Request::address);
   EXPECT_GE(asked, 6);
   EXPECT_LE(asked, 16) << "10, 20, 40 ... 600 s, less a quarter";
   EXPECT_GE(sink_.readings.size(), 7100U);
@@ -548,7 +548,7 @@ TEST_F(ModbusSensorTest, AsksLessAndLessForWhatAStationDoesNotHave) {
 }
 
 TEST_F(ModbusSensorTest, SaysNothingOfAQuantityThatIsMarkedAsNone) {
-  line_.message = [](const decode::modbus::ModbusRequest& request) {
+  line_.message = [](const decode::modbus::Request& request) {
     return request.address == 40 ? reply_with(request, {0xFFFF}) : reply_with(request, {86, 0xFFFF});
   };
   make(station_profile());
@@ -559,7 +559,7 @@ TEST_F(ModbusSensorTest, SaysNothingOfAQuantityThatIsMarkedAsNone) {
 }
 
 TEST_F(ModbusSensorTest, LeavesOutWhatNoAirIs) {
-  line_.message = [](const decode::modbus::ModbusRequest& request) {
+  line_.message = [](const decode::modbus::Request& request) {
     return request.address == 40 ? reply_with(request, {10092}) : reply_with(request, {86, 640});  // 640 %
   };
   make(station_profile());

@@ -71,7 +71,7 @@ class MqttRun {
   std::vector<wind::StationQuantities> quantities() {
     return sensor_.look([](const RecordingSink& sink) { return sink.station_quantities; });
   }
-  wind::WindReading last() {
+  wind::Reading last() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
   }
   /// Ends it; what it says at last.
@@ -203,9 +203,9 @@ class Rtl433Run {
 
   void publish(const std::string& message) const { broker_.publish("rtl_433/attic/events", message); }
   /// The reading that the message makes; without one, the test has failed.
-  wind::WindReading reading_of(const std::string& message) {
+  wind::Reading reading_of(const std::string& message) {
     EXPECT_TRUE(run.reads_after([&] { publish(message); })) << message;
-    return run.count() > 0 ? run.last() : wind::WindReading();
+    return run.count() > 0 ? run.last() : wind::Reading();
   }
   /// The message makes no reading, but is refused for this reason.
   void expect_refused(const std::string& message, decode::Refusal why) {

@@ -61,7 +61,7 @@ class GatewayFault : public testing::Test {
     ASSERT_TRUE(live_.wait_until(
         [&] { return !live_.sink.readings.empty() && live_.sink.readings.back().speed_m_s > 55.0 - 2.0 * step_m_s_; }));
     EXPECT_EQ(live_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-    for (const wind::WindReading& believed : live_.sink.believed)
+    for (const wind::Reading& believed : live_.sink.believed)
       EXPECT_NEAR(believed.speed_m_s, kWind.speed_m_s, step_m_s_);
   }
   void expect_pieces_are_joined() {
@@ -74,8 +74,8 @@ class GatewayFault : public testing::Test {
   void expect_only_the_wind() const {
     EXPECT_THAT(live_.sink.readings,
                 testing::Each(testing::AllOf(
-                    testing::Field(&wind::WindReading::speed_m_s, testing::DoubleNear(kWind.speed_m_s, step_m_s_)),
-                    testing::Field(&wind::WindReading::direction_deg, testing::Optional(kWind.direction_deg)))));
+                    testing::Field(&wind::Reading::speed_m_s, testing::DoubleNear(kWind.speed_m_s, step_m_s_)),
+                    testing::Field(&wind::Reading::direction_deg, testing::Optional(kWind.direction_deg)))));
   }
   void forget() {
     live_.sink.readings.clear();

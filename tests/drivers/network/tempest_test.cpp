@@ -128,7 +128,7 @@ class TempestFault : public TempestBench {
   }
   void suffer(double duration_s, FaultKind fault) { run(*hub_, duration_s, fault); }
   void expect_only_the_wind() const {
-    for (const wind::WindReading& reading : sink.readings) {
+    for (const wind::Reading& reading : sink.readings) {
       EXPECT_EQ(reading.speed_m_s, kTempestWind.speed_m_s);
       EXPECT_EQ(reading.direction_deg, kTempestWind.direction_deg);
     }
@@ -165,7 +165,7 @@ TEST_F(TempestFault, Spike) {
   ASSERT_FALSE(sink.readings.empty());
   EXPECT_EQ(sink.readings.back().speed_m_s, 55.0);
   EXPECT_EQ(sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : sink.believed) EXPECT_EQ(believed.speed_m_s, kTempestWind.speed_m_s);
+  for (const wind::Reading& believed : sink.believed) EXPECT_EQ(believed.speed_m_s, kTempestWind.speed_m_s);
   expect_return();
 }
 
@@ -269,7 +269,7 @@ TEST_F(TempestDriver, DoesNotMixMeanWindsIntoRapidOnes) {
   TempestSimulator hub(options(), still_wind());
   run(hub, 302.0);
   EXPECT_EQ(sink.readings.size(), 101U);
-  for (const wind::WindReading& reading : sink.readings) EXPECT_FALSE(reading.gust_m_s.has_value());
+  for (const wind::Reading& reading : sink.readings) EXPECT_FALSE(reading.gust_m_s.has_value());
 }
 
 TEST_F(TempestDriver, HandsOnWhatElseTheStationMeasures) {

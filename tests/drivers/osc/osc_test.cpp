@@ -145,7 +145,7 @@ class OscRun {
   std::size_t count() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.size(); });
   }
-  wind::WindReading last() {
+  wind::Reading last() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
   }
   /// Ends it; what it says at last.
@@ -253,7 +253,7 @@ TEST(OscDriver, StandsAnyDatagram) {
   while (nested.size() < 60'000) nested = bundle_of(nested);
   run.send_bytes(nested);
   EXPECT_TRUE(run.reads_wind_when_the_limit_lets_it());
-  for (const wind::WindReading& reading : run.all().readings) EXPECT_TRUE(wind::is_plausible(reading));
+  for (const wind::Reading& reading : run.all().readings) EXPECT_TRUE(wind::is_plausible(reading));
 }
 
 /// A socket bound to an address of the loopback; nothing where somebody else has that port there.

@@ -153,7 +153,7 @@ TEST(WindlogReplay, CarriesOutOrdersAndTellsHowItDoes) {
   const auto file = folder / "a.windlog";
   test::write_session(file, test::numbered_readings(100));
   const auto sensor = open_replay({{"file", file.string()}, {"loop", true}, {"seam", 0.0}});
-  auto& player = dynamic_cast<RecordingPlayer&>(*sensor);
+  auto& player = dynamic_cast<Player&>(*sensor);
   ManualClock clock;
   RecordingSink sink;
   EXPECT_FALSE(player.report().position) << "nothing is open before the first poll";
@@ -196,7 +196,7 @@ TEST(WindlogReplay, OrdersWithoutEndAreRefused) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(100));
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}});
-  auto& player = dynamic_cast<RecordingPlayer&>(*sensor);
+  auto& player = dynamic_cast<Player&>(*sensor);
   int taken = 0;
   while (taken < 100'000 && player.order({.kind = PlayerOrder::Kind::kPause})) ++taken;
   EXPECT_GT(taken, 10);
@@ -221,7 +221,7 @@ TEST(WindlogReplay, RefusesAnOffsetFromUtcThatIsNone) {
 
 TEST(WindlogReplay, LeavesTheWholeDaysOutOfAGapOfManyYears) {
   const test::TemporaryFolder folder;
-  wind::WindReading far = test::reading_at(1000, 2.0);
+  wind::Reading far = test::reading_at(1000, 2.0);
   far.time.mono += std::chrono::hours(24 * 365 * 140 + 3);
   test::write_session(folder / "a.windlog", {test::reading_at(1000, 1.0), far});
   const auto sensor = open_replay({{"file", (folder / "a.windlog").string()}, {"rate", 0.01}});

@@ -32,7 +32,7 @@ class FickleSensor final : public ReopeningSensor {
     ++opened;
     return clock.now().mono;
   }
-  Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
+  Result<MonoTime, Failure> work(const Clock& clock, Sink& sink) override {
     if (!is_there) return Failure{"it went away"};
     if (is_faulty) throw std::runtime_error("a fault");
     ++worked;

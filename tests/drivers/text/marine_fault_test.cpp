@@ -33,7 +33,7 @@ class MarineBench : public TextFaultBench {
   explicit MarineBench(std::string driver) : TextFaultBench(std::move(driver), kWind) {}
 
   void expect_only_the_wind() override {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
+    for (const wind::Reading& reading : bench_.sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, kWind.speed_m_s, 0.006);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_NEAR(*reading.direction_deg, kWind.direction_deg, 0.06);
@@ -61,7 +61,7 @@ class MarineBench : public TextFaultBench {
     ASSERT_FALSE(bench_.sink.believed.empty());
     bench_.run(2.0, FaultKind::kSpike);
     EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-    for (const wind::WindReading& believed : bench_.sink.believed) EXPECT_NEAR(believed.speed_m_s, 7.25, 0.006);
+    for (const wind::Reading& believed : bench_.sink.believed) EXPECT_NEAR(believed.speed_m_s, 7.25, 0.006);
     expect_return();
   }
   void expect_garbage_is_refused() {
@@ -173,7 +173,7 @@ TEST_F(Nmea2000Fault, Unplug) {
 
 /// A bus of this machine's own, which a pair of sockets stands for: like a CAN socket it carries the kernel's frames
 /// one by one. Of bytes on a line nothing can be wrong: the controller checks each frame. tests/kernel has a real one.
-class CanBus final : public simulators::text::TextWire {
+class CanBus final : public simulators::text::Wire {
  public:
   CanBus() { CanBus::bring_back(); }
   ~CanBus() override { CanBus::take_away(); }
@@ -219,7 +219,7 @@ class Nmea2000CanFault : public MarineBench {
     const auto open = [bus = wire.get()](const bus::BytePortAddress& /*address*/) { return bus->open(); };
     const Nmea2000SensorSettings settings = nmea2000_sensor_settings_of(values_for("nmea2000", given));
     bench_.put(
-        std::make_unique<simulators::text::TextSimulator>(
+        std::make_unique<simulators::text::Simulator>(
             simulators::text::make_nmea2000_can_device(), bench_.observed(std::move(wire)), 4.0,
             simulators::core::MeasuredWind(std::make_unique<StillWind>(kWind)), 1),
         std::make_unique<Nmea2000Sensor>(settings, bench_.impatient(bus::make_can_port(settings.text.address, open))));

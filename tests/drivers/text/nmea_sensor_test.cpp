@@ -92,7 +92,7 @@ TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
     run(750ms);
   }
   EXPECT_EQ(sink.readings.size(), 10U);
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 5.8, 1e-9);
     EXPECT_EQ(reading.direction_deg, 328.2);
   }
@@ -130,7 +130,7 @@ TEST_F(NmeaSensorTest, NeverMixesFramesOfDirection) {
     run(750ms);
   }
   EXPECT_GE(sink.readings.size(), 5U);
-  for (const wind::WindReading& reading : sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+  for (const wind::Reading& reading : sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
 
   receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
   run(750ms);
@@ -151,7 +151,7 @@ TEST_F(NmeaSensorTest, TakesTheDirectionOfAnotherSentenceWhereItsOwnHasNone) {
       run(1s);
     }
     EXPECT_EQ(sink.readings.size(), 10U) << "each measurement once";
-    for (const wind::WindReading& reading : sink.readings) {
+    for (const wind::Reading& reading : sink.readings) {
       EXPECT_EQ(reading.speed_m_s, 6.7);
       EXPECT_EQ(reading.direction_deg, 57.5);
     }
@@ -197,7 +197,7 @@ TEST_F(NmeaSensorTest, ASentenceWithADirectionAloneLeavesTheSpeedToAnother) {
     run(750ms);
   }
   EXPECT_EQ(sink.readings.size(), 10U);
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 6.6878, 1e-3);
     EXPECT_EQ(reading.direction_deg, 328.2);
   }
@@ -210,7 +210,7 @@ TEST_F(NmeaSensorTest, ACalmWithoutADirectionIsNoSilenceOfIt) {
     receive(nmea_line("WIMWV,57.5,R,0.1,N,A"));
     run(750ms);
   }
-  for (const wind::WindReading& reading : sink.readings) EXPECT_EQ(reading.direction_deg.value_or(328.2), 328.2);
+  for (const wind::Reading& reading : sink.readings) EXPECT_EQ(reading.direction_deg.value_or(328.2), 328.2);
   EXPECT_EQ(sink.links.size(), 1U);
 }
 

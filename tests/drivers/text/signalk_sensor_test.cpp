@@ -59,7 +59,7 @@ TEST_F(SignalKSensorTest, JoinsTheValuesOfOneMoment) {
     run(750ms);
   }
   ASSERT_EQ(sink.readings.size(), 2U);
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_EQ(reading.speed_m_s, 5.0);
     EXPECT_NEAR(reading.direction_deg.value(), 302.704, 0.001);
   }
@@ -86,7 +86,7 @@ TEST_F(SignalKSensorTest, PrefersNorthOfOneMessageInSeveralFrames) {
     run(750ms);
   }
   EXPECT_EQ(sink.readings.size(), 10U);
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_EQ(reading.speed_m_s, 4.0);
     EXPECT_NEAR(reading.direction_deg.value(), 114.592, 0.001);
   }

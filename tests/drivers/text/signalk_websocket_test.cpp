@@ -18,20 +18,19 @@ namespace {
 
 using namespace std::chrono_literals;
 using simulators::core::FaultKind;
-using simulators::text::TextSimulator;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 constexpr simulators::core::PlayedMoment kWindAtSea = {.speed_m_s = 7.25, .direction_deg = 123.0};
 
-std::unique_ptr<TextSimulator> signalk_server(const std::string& token) {
-  return std::make_unique<TextSimulator>(
+std::unique_ptr<simulators::text::Simulator> signalk_server(const std::string& token) {
+  return std::make_unique<simulators::text::Simulator>(
       simulators::text::make_signalk_device(true),
       simulators::text::make_websocket_wire({.path = "/signalk/v1/stream", .token = token}), 20.0,
       simulators::core::MeasuredWind(std::make_unique<StillWind>(kWindAtSea)), 1);
 }
 
-std::unique_ptr<sensor::Sensor> open_signalk(const simulators::text::TextWire& wire, ParameterValues::Map given) {
+std::unique_ptr<sensor::Sensor> open_signalk(const simulators::text::Wire& wire, ParameterValues::Map given) {
   const std::string place = wire.place();
   given.try_emplace("transport", std::string("websocket"));
   given.try_emplace("host", std::string("127.0.0.1"));
@@ -52,7 +51,7 @@ class SignalKWebSocketFault : public testing::Test {
     live_.sink.readings.clear();
     ASSERT_TRUE(live_.wait_for_readings(3)) << live_.sink.last_detail();
     EXPECT_EQ(live_.sink.last_state(), wind::LinkState::kConnected) << live_.sink.last_detail();
-    for (const wind::WindReading& reading : live_.sink.readings) {
+    for (const wind::Reading& reading : live_.sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, kWindAtSea.speed_m_s, 0.001);
       EXPECT_NEAR(reading.direction_deg.value_or(-1.0), kWindAtSea.direction_deg, 0.01);
     }
@@ -74,7 +73,7 @@ class SignalKWebSocketFault : public testing::Test {
   SimulatorThread simulator_;
 
  private:
-  explicit SignalKWebSocketFault(std::unique_ptr<TextSimulator> simulator)
+  explicit SignalKWebSocketFault(std::unique_ptr<simulators::text::Simulator> simulator)
       : live_(open_signalk(simulator->wire(), {{"token", Secret("a.b-c")}})), simulator_(std::move(simulator)) {}
 };
 

@@ -34,7 +34,7 @@ struct TextDriver {
   simulators::core::PlayedMoment wind;
   double speed_tolerance_m_s = 0.0;
   double direction_tolerance_deg = 0.0;
-  std::unique_ptr<simulators::text::TextDevice> (*make_device)(const std::string& format);
+  std::unique_ptr<simulators::text::Device> (*make_device)(const std::string& format);
   std::unique_ptr<sensor::Sensor> (*make_sensor)(const ParameterValues& values, TextBench& bench);
 
   bool checks_lines =
@@ -115,7 +115,7 @@ class TextDriverBench : public TextFaultBench {
     connect(wire, driver_.make_device(format), rate_hz, std::move(given), driver_.make_sensor);
   }
   void expect_only_the_wind() override {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
+    for (const wind::Reading& reading : bench_.sink.readings) {
       EXPECT_LE(std::abs(reading.speed_m_s - driver_.wind.speed_m_s), driver_.speed_tolerance_m_s);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_LE(std::abs(*reading.direction_deg - driver_.wind.direction_deg), driver_.direction_tolerance_deg);
@@ -172,7 +172,7 @@ TEST_P(Fault, Spike) {
   bench_.run(2.0, FaultKind::kSpike);
   EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.01);
   EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : bench_.sink.believed) {
+  for (const wind::Reading& believed : bench_.sink.believed) {
     EXPECT_LE(std::abs(believed.speed_m_s - driver_.wind.speed_m_s), driver_.speed_tolerance_m_s)
         << "the hub keeps it from the wind";
   }

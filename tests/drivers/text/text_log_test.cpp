@@ -47,7 +47,7 @@ void write_log(const std::string& path) {
   std::ofstream out(path, std::ios::binary);
   wind::turbulence::SyntheticWind wind({.mean_speed_m_s = 7.0, .mean_direction_deg = 50.0});
   for (int number = 0; number < 120; ++number) {
-    const wind::WindVector now = wind.at(0.5 * number);
+    const wind::Vector now = wind.at(0.5 * number);
     std::string line = sentence(fmt::format("WIMWV,{:.1f},R,{:.1f},M,A", wind::direction_from_deg(now), speed_of(now)));
     if (number % 17 == 5) line[8] = '#';
     if (number % 23 == 7) line.resize(11);
@@ -77,7 +77,7 @@ std::vector<Log> logs_here(const test::TemporaryFolder& folder) {
 }
 
 /// Everything of the log but the first reading, which a better one of its burst may overtake.
-void expect_the_log(const std::vector<wind::WindReading>& readings, const std::vector<decode::DecodedWind>& expected) {
+void expect_the_log(const std::vector<wind::Reading>& readings, const std::vector<decode::DecodedWind>& expected) {
   ASSERT_GE(readings.size(), expected.size() - 1);
   ASSERT_LE(readings.size(), expected.size());
   const std::size_t ahead = expected.size() - readings.size();

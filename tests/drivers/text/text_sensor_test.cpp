@@ -259,7 +259,7 @@ TEST_F(TextSensorTest, SurvivesWhateverComes) {
     }
     run(120s);
   }
-  for (const wind::WindReading& reading : sink.readings) ASSERT_TRUE(wind::is_plausible(reading));
+  for (const wind::Reading& reading : sink.readings) ASSERT_TRUE(wind::is_plausible(reading));
   EXPECT_FALSE(sink.refusals.empty());
 }
 

@@ -74,7 +74,7 @@ TEST(UdevRules, LetTheGroupInAndNobodyElse) {
 
 TEST(UdevRules, NameTheUsbDevicesOfTheDriverUsb) {
   std::vector<std::string> ids;
-  for (const UsbDaqModel* const model : usb_daq_models()) ids.push_back(describe(model->id));
+  for (const DaqModel* const model : usb_daq_models()) ids.push_back(describe(model->id));
   EXPECT_THAT(ids_of_subsystem("usb", "ATTR"), UnorderedElementsAreArray(ids));
 }
 

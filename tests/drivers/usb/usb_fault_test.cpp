@@ -21,7 +21,7 @@ constexpr double kSeenWithin_s = 2.1;
 class UsbFault : public testing::Test {
  protected:
   static void expect_true_readings(const UsbBench& bench) {
-    for (const wind::WindReading& reading : bench.sink.readings) {
+    for (const wind::Reading& reading : bench.sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_NEAR(*reading.direction_deg, 90.0, 0.5);
@@ -145,7 +145,7 @@ TEST_F(UsbFault, Freeze) {
     bench.poll_for(2.0);
     bench.sink = {};
     bench.poll_for(10.0);
-    EXPECT_THAT(bench.sink.readings, Each(testing::Field(&wind::WindReading::speed_m_s, 0.0)));
+    EXPECT_THAT(bench.sink.readings, Each(testing::Field(&wind::Reading::speed_m_s, 0.0)));
     EXPECT_GE(bench.sink.readings.size(), 9U);
     bench.bus.fault.reset();
     bench.poll_for(2.0);
@@ -167,7 +167,7 @@ TEST_F(UsbFault, Spike) {
     bench.bus.fault = FaultKind::kSpike;
     bench.poll_for(1.0);
     EXPECT_NEAR(bench.sink.readings.back().speed_m_s, 55.0, 2.0);
-    EXPECT_THAT(bench.sink.believed, Each(testing::Field(&wind::WindReading::speed_m_s, testing::Lt(10.0))))
+    EXPECT_THAT(bench.sink.believed, Each(testing::Field(&wind::Reading::speed_m_s, testing::Lt(10.0))))
         << "the hub keeps it from the wind";
     EXPECT_TRUE(bench.sink.refusals.empty());
     bench.bus.fault.reset();

@@ -34,41 +34,40 @@ std::unique_ptr<sensor::Sensor> open_real(std::string_view driver_name, const Pa
   return driver.open(*ParameterValues::resolve(driver.parameters, given));
 }
 
-std::unique_ptr<simulators::core::Simulator> plugged_in(std::unique_ptr<simulators::usb::UsbDevice> device) {
-  std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
-  ports.push_back(std::make_unique<simulators::usb::UsbPort>(std::move(device),
-                                                             simulators::usb::steady_wind(kPlayed_m_s, kPlayed_deg)));
+std::unique_ptr<simulators::core::Simulator> plugged_in(std::unique_ptr<simulators::usb::Device> device) {
+  std::vector<std::unique_ptr<simulators::usb::Port>> ports;
+  ports.push_back(std::make_unique<simulators::usb::Port>(std::move(device),
+                                                          simulators::usb::steady_wind(kPlayed_m_s, kPlayed_deg)));
   return std::make_unique<simulators::usb::UmockdevSimulator>(std::move(ports));
 }
 
-bool can_suffer(const simulators::usb::UsbDevice& device, FaultKind kind) {
+bool can_suffer(const simulators::usb::Device& device, FaultKind kind) {
   return kind == FaultKind::kSilence || kind == FaultKind::kUnplug ||
          std::ranges::count(device.known_faults(), kind) != 0;
 }
 
 struct PluggedIn {
-  explicit PluggedIn(std::unique_ptr<simulators::usb::UsbDevice> device) : simulator(plugged_in(std::move(device))) {}
+  explicit PluggedIn(std::unique_ptr<simulators::usb::Device> device) : simulator(plugged_in(std::move(device))) {}
   SimulatorThread simulator;
 };
 
 /// One device, its driver, and how far a reading may be from the wind that is played. The driver ends before the
 /// device.
 struct RealBench : PluggedIn, test::LiveSensor {
-  RealBench(std::unique_ptr<simulators::usb::UsbDevice> device, std::unique_ptr<sensor::Sensor> sensor,
-            double tolerance)
+  RealBench(std::unique_ptr<simulators::usb::Device> device, std::unique_ptr<sensor::Sensor> sensor, double tolerance)
       : PluggedIn(std::move(device)), test::LiveSensor(std::move(sensor)), tolerance_m_s(tolerance) {}
 
   void expect_the_played_wind() const {
     ASSERT_FALSE(sink.readings.empty());
     double sum_m_s = 0.0;
-    for (const wind::WindReading& reading : sink.readings) {
+    for (const wind::Reading& reading : sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, kPlayed_m_s, tolerance_m_s);
       EXPECT_NEAR(reading.direction_deg.value_or(kPlayed_deg), kPlayed_deg, 2.0);
       sum_m_s += reading.speed_m_s;
     }
     EXPECT_NEAR(sum_m_s / static_cast<double>(sink.readings.size()), kPlayed_m_s, 0.1 * kPlayed_m_s);
     EXPECT_TRUE(
-        std::ranges::any_of(sink.readings, [](const wind::WindReading& one) { return one.direction_deg.has_value(); }));
+        std::ranges::any_of(sink.readings, [](const wind::Reading& one) { return one.direction_deg.has_value(); }));
   }
 
   /// The device suffers, which is told in time; nothing false is published; the readings return by themselves.

@@ -29,7 +29,7 @@ TEST_P(UsbSensorTest, ReadsTheSpeedAndTheDirectionOfTheWind) {
       bench.poll_for(20.0);
       ASSERT_GE(bench.sink.readings.size(), 18U) << speed_m_s;
       double sum_m_s = 0.0;
-      for (const wind::WindReading& reading : bench.sink.readings) {
+      for (const wind::Reading& reading : bench.sink.readings) {
         sum_m_s += reading.speed_m_s;
         ASSERT_TRUE(reading.direction_deg.has_value());
         EXPECT_NEAR(*reading.direction_deg, direction_deg, 0.5);
@@ -47,7 +47,7 @@ TEST_P(UsbSensorTest, IsCalmWithoutPulsesAfterTheLongestWindow) {
   bench.settings.cup.offset_m_s = 0.4;
   bench.poll_for(5.0);
   ASSERT_GE(bench.sink.readings.size(), 4U);
-  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_EQ(reading.speed_m_s, 0.0);
+  for (const wind::Reading& reading : bench.sink.readings) EXPECT_EQ(reading.speed_m_s, 0.0);
 }
 
 TEST_P(UsbSensorTest, HasNoDirectionWhereTheVaneHasNoTrack) {
@@ -55,7 +55,7 @@ TEST_P(UsbSensorTest, HasNoDirectionWhereTheVaneHasNoTrack) {
   bench.bus.wind = {5.0, 358.0};
   bench.poll_for(2.0);
   ASSERT_FALSE(bench.sink.readings.empty());
-  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
+  for (const wind::Reading& reading : bench.sink.readings) EXPECT_FALSE(reading.direction_deg.has_value());
   EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
@@ -97,7 +97,7 @@ TEST_P(UsbSensorTest, MakesNoGustOfAThreadThatIsHeldUp) {
     bench.poll_for(0.7);
   }
   EXPECT_GE(bench.sink.readings.size(), 60U);
-  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+  for (const wind::Reading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
 }
 
 TEST_P(UsbSensorTest, ReadsASlowBusLessOften) {
@@ -107,7 +107,7 @@ TEST_P(UsbSensorTest, ReadsASlowBusLessOften) {
   bench.sink.readings.clear();
   bench.poll_for(20.0);
   EXPECT_GE(bench.sink.readings.size(), 20U);
-  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+  for (const wind::Reading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
 }
 
 TEST_P(UsbSensorTest, ShowsEveryMessageBothWays) {
@@ -196,7 +196,7 @@ TEST(UsbSensor, BeginsANewWindowWhenTheCounterWasReset) {
   bench.poll_for(3.0);
   EXPECT_EQ(bench.sink.count(decode::Refusal::kImplausible), 1);
   ASSERT_GE(bench.sink.readings.size(), 25U);
-  for (const wind::WindReading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
+  for (const wind::Reading& reading : bench.sink.readings) EXPECT_NEAR(reading.speed_m_s, 5.0, 1.1);
   EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
 }
 
@@ -204,7 +204,7 @@ TEST(UsbSensor, SetsALabjackUpAgainWhoseCounterAnotherProgramHasTurnedOff) {
   UsbBench bench("labjack-u3");
   bench.poll_for(3.0);
   static_cast<void>(bench.bus.sockets[0].device->out(
-      1, simulators::usb::UsbBytes{0x57, 0xF8, 0x03, 0x0B, 0x50, 0x00, 0x01, 0x00, 0x40, 0x00, 0x0F, 0x00}));
+      1, simulators::usb::Bytes{0x57, 0xF8, 0x03, 0x0B, 0x50, 0x00, 0x01, 0x00, 0x40, 0x00, 0x0F, 0x00}));
   bench.poll_for(0.3);
   EXPECT_THAT(bench.sink.refusals, testing::Contains(decode::Refusal::kException));
   EXPECT_TRUE(bench.poll_for_reading(2.0));

@@ -24,7 +24,7 @@ inline void tamper(const std::filesystem::path& file, const std::string& sql) {
 
 /// Reads what can be read; whatever comes out is a reading, in order. Answers how many there were.
 inline std::size_t read_warily(const std::filesystem::path& file) {
-  auto reader = drivers::windlog::WindlogReader::open(file);
+  auto reader = drivers::windlog::Reader::open(file);
   if (!reader) {
     EXPECT_NE(reader.error().message.find(file.filename().string()), std::string::npos) << reader.error().message;
     return 0;
@@ -57,7 +57,7 @@ inline constexpr std::array kImpossibleValues = {
 
 /// A reading of 1 m/s and one of 2 m/s are all that is read; so many rows are passed over.
 inline void expect_speeds_1_and_2(const std::filesystem::path& file, std::size_t passed_over) {
-  auto reader = drivers::windlog::WindlogReader::open(file);
+  auto reader = drivers::windlog::Reader::open(file);
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_EQ(reader->next()->value().reading.speed_m_s, 1.0);
   EXPECT_EQ(reader->next()->value().reading.speed_m_s, 2.0);

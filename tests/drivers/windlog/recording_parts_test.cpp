@@ -41,9 +41,9 @@ TEST(RecordingParts, AreFoundInTheOrderOfTime) {
 }
 
 /// Readings of a day of the sample's, one a second.
-std::vector<wind::WindReading> readings_of_day(int day) {
-  std::vector<wind::WindReading> readings = test::numbered_readings(700);
-  for (wind::WindReading& reading : readings) {
+std::vector<wind::Reading> readings_of_day(int day) {
+  std::vector<wind::Reading> readings = test::numbered_readings(700);
+  for (wind::Reading& reading : readings) {
     reading.time.mono += day * 24h;
     reading.time.utc += day * 24h;
   }
@@ -68,7 +68,7 @@ class RecordingOfParts : public testing::Test {
 };
 
 TEST_F(RecordingOfParts, IsReadToItsEndAlthoughItsWriterCompletesTheLastFileMeanwhile) {
-  auto reader = WindlogReader::open(recording());
+  auto reader = Reader::open(recording());
   ASSERT_TRUE(reader) << reader.error().message;
   ASSERT_FALSE(rename_recording(recording(), part_name(recording(), kDay + 48h)));
   test::write_session(recording(), readings_of_day(3), "roof");
@@ -83,8 +83,8 @@ TEST_F(RecordingOfParts, IsReadToItsEndAlthoughItsWriterCompletesTheLastFileMean
 }
 
 TEST_F(RecordingOfParts, IsReadAsOne) {
-  auto parts = WindlogReader::open(recording());
-  auto whole = WindlogReader::open(folder_ / "whole.windlog");
+  auto parts = Reader::open(recording());
+  auto whole = Reader::open(folder_ / "whole.windlog");
   ASSERT_TRUE(parts) << parts.error().message;
   EXPECT_EQ(parts->sessions().size(), 3U);
   EXPECT_EQ(parts->duration(), whole->duration());
@@ -110,7 +110,7 @@ TEST_F(RecordingOfParts, IsReadAsOne) {
 TEST_F(RecordingOfParts, OneThatIsDamagedIsNamedAndTheOthersAreRead) {
   const auto damaged = part_name(recording(), kDay + 24h);
   std::ofstream(damaged, std::ios::binary | std::ios::trunc) << std::string(4096, '\0');
-  auto reader = WindlogReader::open(recording());
+  auto reader = Reader::open(recording());
   ASSERT_TRUE(reader) << reader.error().message;
   ASSERT_EQ(reader->damage().size(), 1U);
   const std::string sentence = reader->damage()[0];
@@ -131,7 +131,7 @@ TEST_F(RecordingOfParts, TheRestOfOneThatIsDamagedInTheMiddleIsLeftOut) {
     file.seekp(size - 5 * kPage);
     file << std::string(3 * kPage, '\xff');
   }
-  auto reader = WindlogReader::open(recording());
+  auto reader = Reader::open(recording());
   ASSERT_TRUE(reader) << reader.error().message;
   std::size_t of_roof = 0;
   std::size_t of_mast = 0;
@@ -148,12 +148,12 @@ TEST_F(RecordingOfParts, TheRestOfOneThatIsDamagedInTheMiddleIsLeftOut) {
 TEST_F(RecordingOfParts, IsRefusedWhereAllAreDamaged) {
   for (const auto& part : completed_parts(recording())) std::ofstream(part.file, std::ios::trunc) << "no database";
   std::ofstream(recording(), std::ios::trunc) << "no database";
-  EXPECT_FALSE(WindlogReader::open(recording()));
+  EXPECT_FALSE(Reader::open(recording()));
 }
 
 TEST_F(RecordingOfParts, OneThatWasJustCreatedHoldsNothingYet) {
   std::ofstream(recording(), std::ios::trunc).flush();
-  auto reader = WindlogReader::open(recording());
+  auto reader = Reader::open(recording());
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_TRUE(reader->damage().empty());
   EXPECT_EQ(test::read_all(recording()).size(), 1400U);
@@ -165,24 +165,24 @@ TEST_F(RecordingOfParts, IsReadWithoutTheFileThatWasWrittenLast) {
 }
 
 TEST_F(RecordingOfParts, OneSensorIsReadThroughAllParts) {
-  auto cursor = WindlogCursor::open(recording(), "mast");
+  auto cursor = Cursor::open(recording(), "mast");
   ASSERT_TRUE(cursor) << cursor.error().message;
   std::size_t count = 0;
   for (auto logged = cursor->next(); logged && *logged; logged = cursor->next(), ++count) {
     EXPECT_EQ(cursor->sensor_of(**logged).name, "mast");
   }
   EXPECT_EQ(count, 1400U);
-  EXPECT_EQ(WindlogCursor::open(recording(), "roof")->last(), 24h + 69'900ms);
+  EXPECT_EQ(Cursor::open(recording(), "roof")->last(), 24h + 69'900ms);
 }
 
 TEST_F(RecordingOfParts, ReadsOnAsTheLastPartGrows) {
   const auto readings = readings_of_day(3);
-  auto writer = WindlogWriter::open(recording());
+  auto writer = Writer::open(recording());
   ASSERT_TRUE(writer->begin_session({readings[0].time, "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
   ASSERT_TRUE(writer->append(*sensor, readings[0]));
   ASSERT_TRUE(writer->commit());
-  auto reader = WindlogReader::open(recording());
+  auto reader = Reader::open(recording());
   while (reader->next()->has_value()) continue;
   ASSERT_TRUE(writer->append(*sensor, readings[1]));
   ASSERT_TRUE(writer->commit());

@@ -26,7 +26,7 @@ class VerifyRecording : public testing::Test {
   /// Three files of a series, each of a minute, one after the other without a pause.
   void write_series() {
     for (std::size_t part = 0; part < 3; ++part) {
-      auto writer = WindlogWriter::open(file_);
+      auto writer = Writer::open(file_);
       ASSERT_TRUE(writer);
       const auto begin_ms = static_cast<std::int64_t>(60'000 * part);
       const Instant started = test::at_ms(begin_ms, test::kSampleUtc_ms + begin_ms);
@@ -162,7 +162,7 @@ TEST_F(VerifyRecording, FindsAFileThatIsMissingInTheMiddleAndNotOneThatWasDelete
 }
 
 TEST_F(VerifyRecording, HasNoCountOfASessionThatWasNotClosed) {
-  auto writer = WindlogWriter::open(file_);
+  auto writer = Writer::open(file_);
   ASSERT_TRUE(writer);
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");

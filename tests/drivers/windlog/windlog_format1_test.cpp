@@ -43,13 +43,13 @@ CREATE INDEX IF NOT EXISTS reading_by_time ON reading (session, mono_ns);
 )sql";
 
 /// Writes a session of one sensor.
-void write_format1(const std::filesystem::path& file, const std::vector<wind::WindReading>& readings) {
+void write_format1(const std::filesystem::path& file, const std::vector<wind::Reading>& readings) {
   std::string sql = "BEGIN; PRAGMA application_id = " + std::to_string(kApplicationId) + "; PRAGMA user_version = 1;";
   sql += kSchemaOfFormat1;
   sql +=
       "INSERT INTO session (started_utc_ns, started_mono_ns, software, configuration) VALUES (0, 0, 'yuragi test', '');"
       "INSERT INTO sensor (session, name, driver, options) SELECT max(id), 'mast', 'synthetic', '' FROM session;";
-  for (const wind::WindReading& reading : readings) {
+  for (const wind::Reading& reading : readings) {
     sql += "INSERT INTO reading SELECT max(session.id), max(sensor.id), " +
            std::to_string(reading.time.utc.time_since_epoch().count()) + ", " +
            std::to_string(reading.time.mono.time_since_epoch().count()) + ", " + std::to_string(reading.speed_m_s) +
@@ -61,7 +61,7 @@ void write_format1(const std::filesystem::path& file, const std::vector<wind::Wi
 TEST(Format1, ARecordingOfAnOlderVersionIsReadInFull) {
   const auto all = read_all(kept_recording());
   ASSERT_EQ(all.size(), 34U);
-  auto reader = WindlogReader::open(kept_recording());
+  auto reader = Reader::open(kept_recording());
   ASSERT_TRUE(reader) << reader.error().message;
   ASSERT_EQ(reader->sessions().size(), 2U);
   EXPECT_EQ(reader->sessions()[0].software, "yuragi 0.2.0");
@@ -76,7 +76,7 @@ TEST(Format1, ARecordingOfAnOlderVersionIsReadInFull) {
 }
 
 TEST(Format1, OneSensorIsReadByItself) {
-  auto cursor = WindlogCursor::open(kept_recording(), "mast");
+  auto cursor = Cursor::open(kept_recording(), "mast");
   ASSERT_TRUE(cursor) << cursor.error().message;
   std::size_t count = 0;
   for (auto logged = cursor->next(); logged && *logged; logged = cursor->next(), ++count) {
@@ -88,7 +88,7 @@ TEST(Format1, OneSensorIsReadByItself) {
 TEST(Format1, IsNotContinued) {
   const test::TemporaryFolder folder;
   write_format1(folder / "a.windlog", numbered_readings(3));
-  const auto writer = WindlogWriter::open(folder / "a.windlog");
+  const auto writer = Writer::open(folder / "a.windlog");
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("older Yuragi"), std::string::npos) << writer.error().message;
   EXPECT_EQ(read_all(folder / "a.windlog").size(), 3U);
@@ -98,7 +98,7 @@ TEST(Format1, AScanEndsWhenItIsToldTo) {
   const test::TemporaryFolder folder;
   write_format1(folder / "a.windlog", numbered_readings(20'000));
   std::stop_source stop;
-  auto reader = WindlogReader::open(folder / "a.windlog", stop.get_token());
+  auto reader = Reader::open(folder / "a.windlog", stop.get_token());
   ASSERT_TRUE(reader);
   stop.request_stop();
   const auto found = reader->last_log_time({false});
@@ -143,16 +143,16 @@ TEST(HostileFormat1, RowsAtTimesBeyondAllMeasureChangeNothing) {
     tamper(file, std::string("INSERT INTO reading VALUES (1, 1, 5, ") + mono_ns + ", 1.0, NULL, NULL, 0)");
   }
   EXPECT_EQ(read_warily(file), 2U);
-  EXPECT_EQ(WindlogReader::open(file)->duration(), std::chrono::seconds(8));
+  EXPECT_EQ(Reader::open(file)->duration(), std::chrono::seconds(8));
 }
 
 TEST(HostileFormat1, SessionsWhoseTimesAddUpToTooMuchAreRefused) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  wind::WindReading last = reading_at(0, 1.0);
+  wind::Reading last = reading_at(0, 1.0);
   last.time.mono = MonoTime(Nanoseconds(kMaxTime_ns));
   for (int i = 0; i < 3; ++i) write_format1(file, {reading_at(0, 1.0), last});
-  const auto reader = WindlogReader::open(file);
+  const auto reader = Reader::open(file);
   ASSERT_FALSE(reader);
   EXPECT_NE(reader.error().message.find("session 2"), std::string::npos) << reader.error().message;
 }
@@ -165,7 +165,7 @@ TEST(HostileFormat1, AViewInPlaceOfATableIsNotRun) {
          "DROP TABLE reading; CREATE VIEW reading AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) "
          "SELECT 1 AS session, 1 AS sensor, x AS utc_ns, x AS mono_ns, 1.0 AS speed_m_s, NULL AS direction_deg, "
          "NULL AS gust_m_s, 0 AS quality FROM n");
-  EXPECT_FALSE(WindlogReader::open(file));
+  EXPECT_FALSE(Reader::open(file));
 }
 
 TEST(HostileFormat1, AFileThatLacksATableOrAColumnIsRefused) {
@@ -176,7 +176,7 @@ TEST(HostileFormat1, AFileThatLacksATableOrAColumnIsRefused) {
     std::filesystem::remove(file);
     write_format1(file, {reading_at(1000, 1.0)});
     tamper(file, std::string("PRAGMA foreign_keys = OFF; ") + sql);
-    EXPECT_FALSE(WindlogReader::open(file)) << sql;
+    EXPECT_FALSE(Reader::open(file)) << sql;
   }
 }
 

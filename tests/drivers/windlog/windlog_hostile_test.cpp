@@ -43,8 +43,8 @@ TEST(HostileWindlog, OfRandomBytesIsRefused) {
     for (char& c : bytes) c = static_cast<char>(random());
     if (i % 2 == 0 && bytes.size() >= 16) bytes.replace(0, 16, std::string_view("SQLite format 3\0", 16));
     write_bytes(folder / "garbage.windlog", bytes);
-    EXPECT_FALSE(WindlogReader::open(folder / "garbage.windlog"));
-    EXPECT_FALSE(WindlogPlayback::open(folder / "garbage.windlog"));
+    EXPECT_FALSE(Reader::open(folder / "garbage.windlog"));
+    EXPECT_FALSE(Playback::open(folder / "garbage.windlog"));
   }
 }
 
@@ -111,7 +111,7 @@ TEST(HostileWindlog, RowsAtTimesBeyondAllMeasureChangeNothing) {
     tamper(file, std::string("INSERT INTO reading_1 VALUES (") + time_ns + ", 0, 1.0, NULL, NULL, 0)");
   }
   EXPECT_EQ(read_warily(file), 2U);
-  EXPECT_EQ(WindlogReader::open(file)->duration(), std::chrono::seconds(8));
+  EXPECT_EQ(Reader::open(file)->duration(), std::chrono::seconds(8));
 }
 
 TEST(HostileWindlog, SessionsAtImpossibleTimesAreRefused) {
@@ -122,7 +122,7 @@ TEST(HostileWindlog, SessionsAtImpossibleTimesAreRefused) {
     std::filesystem::remove(file);
     test::write_session(file, {test::reading_at(1000, 1.0)});
     tamper(file, std::string("UPDATE session SET ") + change);
-    const auto reader = WindlogReader::open(file);
+    const auto reader = Reader::open(file);
     ASSERT_FALSE(reader) << change;
     EXPECT_NE(reader.error().message.find("session 1"), std::string::npos) << reader.error().message;
   }
@@ -137,7 +137,7 @@ TEST(HostileWindlog, ASensorOfNoSeriesOrOfAnImpossibleOneHasNoReadings) {
          "INSERT INTO sensor (session, series, driver, options) VALUES (1, -1, '', ''), (1, 481, '', ''), "
          "(1, 77, '', '')");
   EXPECT_EQ(read_warily(file), 1U);
-  EXPECT_EQ(WindlogReader::open(file)->sensors().size(), 1U);
+  EXPECT_EQ(Reader::open(file)->sensors().size(), 1U);
 }
 
 TEST(HostileWindlog, AViewInPlaceOfATableIsNotRun) {
@@ -148,7 +148,7 @@ TEST(HostileWindlog, AViewInPlaceOfATableIsNotRun) {
          "DROP VIEW reading; DROP TABLE reading_1; CREATE VIEW reading_1 AS WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL "
          "SELECT x + 1 FROM n) SELECT x AS time_ns, 0 AS clock_ns, 1.0 AS speed_m_s, NULL AS direction_deg, "
          "NULL AS gust_m_s, 0 AS quality FROM n");
-  EXPECT_FALSE(WindlogReader::open(file));
+  EXPECT_FALSE(Reader::open(file));
 }
 
 TEST(HostileWindlog, AFileThatLacksATableOrAColumnIsRefused) {
@@ -159,7 +159,7 @@ TEST(HostileWindlog, AFileThatLacksATableOrAColumnIsRefused) {
     std::filesystem::remove(file);
     test::write_session(file, {test::reading_at(1000, 1.0)});
     tamper(file, std::string("PRAGMA foreign_keys = OFF; DROP VIEW reading; ") + sql);
-    EXPECT_FALSE(WindlogReader::open(file)) << sql;
+    EXPECT_FALSE(Reader::open(file)) << sql;
   }
 }
 
@@ -181,7 +181,7 @@ TEST(HostileWindlog, InAReadOnlyFolderIsReadIfItWasClosedAndRefusedInWordsIfNot)
   test::write_session(folder / "closed.windlog", test::numbered_readings(10));
 
   // One whose recorder was killed, as it lies on the disk.
-  auto writer = WindlogWriter::open(folder / "live.windlog");
+  auto writer = Writer::open(folder / "live.windlog");
   ASSERT_TRUE(writer->begin_session({test::reading_at(0, 0).time, "yuragi test", ""}));
   ASSERT_TRUE(writer->append(*writer->add_sensor("mast", "", ""), test::reading_at(1, 1.0)));
   ASSERT_TRUE(writer->commit());
@@ -194,7 +194,7 @@ TEST(HostileWindlog, InAReadOnlyFolderIsReadIfItWasClosedAndRefusedInWordsIfNot)
 
   EXPECT_EQ(as_nobody([&] { return static_cast<int>(read_warily(folder / "closed.windlog")); }), 10);
   EXPECT_EQ(as_nobody([&] {
-              const auto reader = WindlogReader::open(folder / "killed.windlog");
+              const auto reader = Reader::open(folder / "killed.windlog");
               return !reader && reader.error().message.find("copy both") != std::string::npos ? 7 : 8;
             }),
             7);

@@ -12,20 +12,20 @@ using test::numbered_readings;
 using test::reading_at;
 using test::write_session;
 
-WindlogPlayback playback_of(const std::filesystem::path& file, const PlaybackOptions& options = {}) {
-  return WindlogPlayback::open(file, options).value();
+Playback playback_of(const std::filesystem::path& file, const PlaybackOptions& options = {}) {
+  return Playback::open(file, options).value();
 }
 
 /// Why it cannot be played; empty if it can.
 std::string complaint(const std::filesystem::path& file, const PlaybackOptions& options) {
-  const auto playback = WindlogPlayback::open(file, options);
+  const auto playback = Playback::open(file, options);
   return playback ? "" : playback.error().message;
 }
 
 TEST(WindlogPlayback, GivesEveryReadingInLogTime) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(1500));
-  WindlogPlayback playback = playback_of(folder / "a.windlog");
+  Playback playback = playback_of(folder / "a.windlog");
   for (int i = 0; i < 1500; ++i) {
     const auto played = playback.next().value();
     ASSERT_TRUE(played);
@@ -70,7 +70,7 @@ TEST(WindlogPlayback, SaysWhatIsWrongWithAStart) {
 TEST(WindlogPlayback, PlaysTheSensorThatIsAskedFor) {
   const test::TemporaryFolder folder;
   {
-    auto writer = WindlogWriter::open(folder / "a.windlog");
+    auto writer = Writer::open(folder / "a.windlog");
     ASSERT_TRUE(writer->begin_session({test::reading_at(0, 0).time, "yuragi test", ""}));
     const auto roof = writer->add_sensor("roof", "modbus", "");
     const auto mast = writer->add_sensor("mast", "modbus", "");
@@ -80,7 +80,7 @@ TEST(WindlogPlayback, PlaysTheSensorThatIsAskedFor) {
     }
   }
   const auto count = [&](const std::string& sensor, double speed_m_s) {
-    WindlogPlayback playback = playback_of(folder / "a.windlog", {.sensor = sensor});
+    Playback playback = playback_of(folder / "a.windlog", {.sensor = sensor});
     int matching = 0;
     while (const auto played = playback.next().value()) matching += played->reading.speed_m_s == speed_m_s ? 1 : 0;
     return matching;
@@ -99,7 +99,7 @@ TEST(WindlogPlayback, LoopsWithTheMeanIntervalAtTheSeam) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog",
                       {test::reading_at(0, 0.0), test::reading_at(100, 1.0), test::reading_at(400, 2.0)});
-  WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
+  Playback playback = playback_of(folder / "a.windlog", {.loop = true});
   const std::vector<double> expected = {0.0, 0.1, 0.4, 0.6, 0.7, 1.0, 1.2, 1.3, 1.6, 1.8};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const auto played = playback.next().value();
@@ -112,7 +112,7 @@ TEST(WindlogPlayback, LoopsWithTheMeanIntervalAtTheSeam) {
 TEST(WindlogPlayback, LoopsFromItsStart) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(20));
-  WindlogPlayback playback = playback_of(folder / "a.windlog", {.start = "1.85", .loop = true});
+  Playback playback = playback_of(folder / "a.windlog", {.start = "1.85", .loop = true});
   for (const double expected : {0.05, 1.05, 2.05}) {
     EXPECT_NEAR(playback.next().value()->log_time_s, expected, 1e-9);
   }
@@ -121,14 +121,14 @@ TEST(WindlogPlayback, LoopsFromItsStart) {
 TEST(WindlogPlayback, OfOneReadingLoopsOnceASecond) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", {test::reading_at(700, 3.0)});
-  WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
+  Playback playback = playback_of(folder / "a.windlog", {.loop = true});
   for (const double expected : {0.0, 1.0, 2.0}) EXPECT_EQ(playback.next().value()->log_time_s, expected);
 }
 
 TEST(WindlogPlayback, OfReadingsAtOneMomentMovesOnWhenItLoops) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", {test::reading_at(700, 3.0), test::reading_at(700, 4.0)});
-  WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
+  Playback playback = playback_of(folder / "a.windlog", {.loop = true});
   double last_s = 0.0;
   for (int i = 0; i < 2000; ++i) last_s = playback.next().value()->log_time_s;
   EXPECT_NEAR(last_s, 0.999, 1e-5);  // one of two at one moment is moved by a nanosecond

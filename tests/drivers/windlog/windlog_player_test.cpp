@@ -24,30 +24,30 @@ using test::write_session;
 using ::testing::HasSubstr;
 
 /// 600 readings in a minute, whose wind swings slowly between 2 and 10 m/s and comes from 350 to 10 degrees.
-std::vector<wind::WindReading> swinging_wind() {
-  std::vector<wind::WindReading> readings;
+std::vector<wind::Reading> swinging_wind() {
+  std::vector<wind::Reading> readings;
   for (int i = 0; i < 600; ++i) {
     const double phase = 2.0 * std::numbers::pi * i / 450.0;
-    wind::WindReading reading = test::reading_at(100 * i, 6.0 - 4.0 * std::cos(phase));
+    wind::Reading reading = test::reading_at(100 * i, 6.0 - 4.0 * std::cos(phase));
     reading.direction_deg = std::fmod(360.0 + 10.0 * std::sin(phase), 360.0);
     readings.push_back(reading);
   }
   return readings;
 }
 
-wind::WindVector vector_of(const wind::WindReading& reading) {
+wind::Vector vector_of(const wind::Reading& reading) {
   return wind::wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
 
 /// A player with a clock of its own, and all that it has said.
 class Playing {
  public:
-  Playing(const std::vector<wind::WindReading>& readings, PlayerOptions options) {
+  Playing(const std::vector<wind::Reading>& readings, PlayerOptions options) {
     test::write_session(folder_ / "a.windlog", readings);
-    player_.emplace(WindlogPlayer::open(folder_ / "a.windlog", std::move(options), clock_.now()).value());
+    player_.emplace(Player::open(folder_ / "a.windlog", std::move(options), clock_.now()).value());
   }
 
-  WindlogPlayer* operator->() { return &*player_; }
+  Player* operator->() { return &*player_; }
   Instant now() const { return clock_.now(); }
 
   /// Plays for a while, looking often.
@@ -56,7 +56,7 @@ class Playing {
     for (MonoTime next = look(); clock_.now().mono < end; next = look()) clock_.advance_to(std::min(next, end));
   }
   MonoTime look() {
-    return player_->play(clock_.now(), [this](const wind::WindReading& reading) { said.push_back(reading); }).value();
+    return player_->play(clock_.now(), [this](const wind::Reading& reading) { said.push_back(reading); }).value();
   }
   void halt(Nanoseconds duration) { clock_.advance(duration); }
 
@@ -69,20 +69,20 @@ class Playing {
     return largest;
   }
   bool is_in_order() const {
-    return std::ranges::is_sorted(said, {}, [](const wind::WindReading& reading) { return reading.time.mono; });
+    return std::ranges::is_sorted(said, {}, [](const wind::Reading& reading) { return reading.time.mono; });
   }
   double place_s() const { return seconds(player_->position(clock_.now().mono).log_time); }
-  std::string refusal(const std::function<Result<void, Failure>(WindlogPlayer&)>& order) {
+  std::string refusal(const std::function<Result<void, Failure>(Player&)>& order) {
     const auto done = order(*player_);
     return done ? "" : done.error().message;
   }
 
-  std::vector<wind::WindReading> said;
+  std::vector<wind::Reading> said;
 
  private:
   test::TemporaryFolder folder_;
   ManualClock clock_;
-  std::optional<WindlogPlayer> player_;
+  std::optional<Player> player_;
 };
 
 // ---- pause and step ----
@@ -150,8 +150,7 @@ TEST(WindlogPlayer, StepsEndAtTheLastReadingAndInALoopBeginAgain) {
   once->step(once.now(), 500);
   once.look();
   EXPECT_DOUBLE_EQ(once.said.back().speed_m_s, 0.009);
-  EXPECT_THAT(once.refusal([&](WindlogPlayer& player) { return player.step(once.now(), 1); }),
-              HasSubstr("last reading"));
+  EXPECT_THAT(once.refusal([&](Player& player) { return player.step(once.now(), 1); }), HasSubstr("last reading"));
   once.run(1s);
   EXPECT_FALSE(once->is_finished()) << "it stands, and does not end";
 
@@ -196,13 +195,11 @@ TEST(WindlogPlayer, ASeekToNowhereIsRefusedAndChangesNothing) {
   Playing playing(test::numbered_readings(1000), {});
   playing.run(2s);
   for (const char* place : {"100", "+98", "2019-01-01", "soon", "", "+", "+x", "-nan", "+1e99", "nan", "--1"}) {
-    const std::string refusal =
-        playing.refusal([&](WindlogPlayer& player) { return player.seek(playing.now(), place); });
+    const std::string refusal = playing.refusal([&](Player& player) { return player.seek(playing.now(), place); });
     if (std::string_view(place).empty()) continue;  // the beginning
     EXPECT_FALSE(refusal.empty()) << place;
   }
-  EXPECT_THAT(playing.refusal([&](WindlogPlayer& player) { return player.seek(playing.now(), "100"); }),
-              HasSubstr("99.9"));
+  EXPECT_THAT(playing.refusal([&](Player& player) { return player.seek(playing.now(), "100"); }), HasSubstr("99.9"));
 }
 
 TEST(WindlogPlayer, GoesOnAfterItsEndWhereItIsToldTo) {
@@ -235,11 +232,11 @@ TEST(WindlogPlayer, ARateThatChangesKeepsThePlace) {
 
 TEST(WindlogPlayer, BetweenTwoWindsLiesTheirVector) {
   const auto blow = [](double speed_m_s, std::optional<double> from_deg) {
-    wind::WindReading reading = test::reading_at(0, speed_m_s);
+    wind::Reading reading = test::reading_at(0, speed_m_s);
     reading.direction_deg = from_deg;
     return reading;
   };
-  const wind::WindReading through_north = between(blow(5.0, 350.0), blow(5.0, 10.0), 0.5);
+  const wind::Reading through_north = between(blow(5.0, 350.0), blow(5.0, 10.0), 0.5);
   EXPECT_NEAR(std::remainder(*through_north.direction_deg, 360.0), 0.0, 1e-9);
   EXPECT_NEAR(through_north.speed_m_s, 5.0 * std::cos(10.0 * std::numbers::pi / 180.0), 1e-9);
   EXPECT_NEAR(between(blow(2.0, 90.0), blow(6.0, 90.0), 0.25).speed_m_s, 3.0, 1e-12);
@@ -273,8 +270,8 @@ TEST(WindlogPlayer, ASeekFadesFromWhatTheOldPlaceGoesOnToSay) {
   EXPECT_LT(playing.largest_step_m_s(), 0.4);
   EXPECT_LT(playing.said[begun].speed_m_s, 2.5);
   // In the middle both count half: at 3 s of the old place, and 22 s of the new.
-  const std::vector<wind::WindReading> recorded = swinging_wind();
-  const wind::WindVector middle = 0.5 * (vector_of(recorded[30]) + vector_of(recorded[220]));
+  const std::vector<wind::Reading> recorded = swinging_wind();
+  const wind::Vector middle = 0.5 * (vector_of(recorded[30]) + vector_of(recorded[220]));
   EXPECT_LT(speed_of(vector_of(playing.said[begun + 20]) - middle), 0.15);
   // After it the new place alone.
   EXPECT_NEAR(playing.said.back().speed_m_s, recorded[260].speed_m_s, 0.1);
@@ -363,13 +360,12 @@ double told_after_s(const std::filesystem::path& file, const std::string& sensor
   ManualClock clock;
   const MonoTime begin = clock.now().mono;
   auto player =
-      WindlogPlayer::open(file, {.playback = {.sensor = sensor}, .stays_with_others = stays_with_others}, clock.now())
-          .value();
+      Player::open(file, {.playback = {.sensor = sensor}, .stays_with_others = stays_with_others}, clock.now()).value();
   double told_s = 0.0;
   while (!player.is_finished() && told_s == 0.0) {
     const MonoTime next = player
                               .play(clock.now(),
-                                    [&](const wind::WindReading& reading) {
+                                    [&](const wind::Reading& reading) {
                                       if (reading.speed_m_s == speed_m_s) told_s = seconds(reading.time.mono - begin);
                                     })
                               .value();
@@ -383,7 +379,7 @@ TEST(WindlogPlayer, PlayersOfSeveralSensorsStayTogetherOverDaysWithoutASession) 
   const auto file = folder / "a.windlog";
   constexpr std::int64_t kHour_ms = 3'600'000;
   {
-    auto writer = WindlogWriter::open(file).value();
+    auto writer = Writer::open(file).value();
     ASSERT_TRUE(writer.begin_session({test::at_ms(0, kSampleUtc_ms), "yuragi test", ""}));
     const auto mast = writer.add_sensor("mast", "line", "").value();
     const auto yard = writer.add_sensor("yard", "line", "").value();
@@ -394,7 +390,7 @@ TEST(WindlogPlayer, PlayersOfSeveralSensorsStayTogetherOverDaysWithoutASession) 
     ASSERT_TRUE(writer.begin_session({test::at_ms(0, kSampleUtc_ms + later_ms), "yuragi test", ""}));
     for (const char* const name : {"mast", "yard"}) {
       const auto id = writer.add_sensor(name, "line", "").value();
-      wind::WindReading reading = reading_at(0, 9.0);
+      wind::Reading reading = reading_at(0, 9.0);
       reading.time.utc += std::chrono::milliseconds(later_ms);
       ASSERT_TRUE(writer.append(id, reading));
     }
@@ -443,7 +439,7 @@ TEST(TimeOfDay, TakesHoursAheadOfUtc) {
 TEST(WindlogPlayer, BeginsAndLoopsAtTheTimeOfDay) {
   // A day and a half from 14:00 UTC on, a reading a minute that tells its minute of the day; the wall's clock shows
   // midnight UTC (tests/support/manual_clock.hpp), which is 10 h after the beginning.
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   for (int minute = 0; minute < 36 * 60; ++minute) {
     readings.push_back(test::reading_at(60'000LL * minute, 0.01 * ((14 * 60 + minute) % 1440)));
   }
@@ -454,7 +450,7 @@ TEST(WindlogPlayer, BeginsAndLoopsAtTheTimeOfDay) {
   EXPECT_DOUBLE_EQ(playing.place_s(), 36'000.0);
   playing.run(std::chrono::hours(24 * 4));
   EXPECT_GE(playing->position(playing.now().mono).rounds, 2U);
-  for (const wind::WindReading& reading : playing.said) {
+  for (const wind::Reading& reading : playing.said) {
     const double minute = seconds(time_of_day(reading.time.utc, utc)) / 60.0;
     const double apart = std::remainder(100.0 * reading.speed_m_s - minute, 1440.0);
     EXPECT_LT(std::abs(apart), 1.1) << "at minute " << minute;

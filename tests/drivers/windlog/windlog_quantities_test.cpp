@@ -26,7 +26,7 @@ wind::StationQuantities temperature_at(std::int64_t mono_ms, double air_temperat
 /// A session from 1 s on, of a mast with a reading a second, and what its station said.
 void write_quantities(const std::filesystem::path& file, const std::vector<wind::StationQuantities>& said,
                       std::int64_t begin_ms = 1000) {
-  auto writer = WindlogWriter::open(file);
+  auto writer = Writer::open(file);
   ASSERT_TRUE(writer) << writer.error().message;
   ASSERT_TRUE(writer->begin_session({test::at_ms(begin_ms, test::kSampleUtc_ms + begin_ms), "yuragi test", ""}));
   const auto mast = writer->add_sensor("mast", "nmea", "");
@@ -48,7 +48,7 @@ struct ReadQuantities {
 ReadQuantities quantities_of(const std::filesystem::path& file, Nanoseconds from = Nanoseconds{0},
                              Nanoseconds to = Nanoseconds::max()) {
   ReadQuantities all;
-  const auto reader = WindlogReader::open(file);
+  const auto reader = Reader::open(file);
   EXPECT_TRUE(reader) << (reader ? "" : reader.error().message);
   if (!reader) return all;
   const auto skipped =
@@ -127,7 +127,7 @@ TEST(WindlogQuantities, OfASeriesOfFilesFollowEachOther) {
 /// A session of the mast with quantities and no reading.
 void write_no_reading(const std::filesystem::path& file, const std::vector<wind::StationQuantities>& said,
                       std::int64_t begin_ms) {
-  auto writer = WindlogWriter::open(file);
+  auto writer = Writer::open(file);
   ASSERT_TRUE(writer) << writer.error().message;
   ASSERT_TRUE(writer->begin_session({test::at_ms(begin_ms, test::kSampleUtc_ms + begin_ms), "yuragi test", ""}));
   const auto mast = writer->add_sensor("mast", "nmea", "");
@@ -162,7 +162,7 @@ TEST(WindlogQuantities, OfFilesWithoutAReadingFollowTheOthers) {
     EXPECT_EQ(row.log_time, std::chrono::milliseconds(mono_ms - 101'000)) << "from the first reading of all on";
     EXPECT_EQ(row.quantities.time.utc, test::at_ms(0, test::kSampleUtc_ms + mono_ms).utc);
   }
-  const auto reader = WindlogReader::open(folder / "a.windlog");
+  const auto reader = Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   for (const LoggedQuantities& row : whole.rows) EXPECT_EQ(reader->sensors()[row.sensor].name, "mast");
   EXPECT_EQ(reader->sessions().size(), 2U);
@@ -188,7 +188,7 @@ TEST(WindlogQuantities, AreKeptApartFromThoseOfASessionWhoseClockWasSetBack) {
   const auto file = folder / "a.windlog";
   write_quantities(file, {temperature_at(2000, 1.0), temperature_at(3'000'000, 2.0)});  // long after the last reading
   // The next start, on a machine whose clock is two hours slow.
-  auto writer = WindlogWriter::open(file);
+  auto writer = Writer::open(file);
   ASSERT_TRUE(writer);
   const std::int64_t utc_ms = test::kSampleUtc_ms - 7'200'000;
   ASSERT_TRUE(writer->begin_session({test::at_ms(5000, utc_ms), "yuragi test", ""}));
@@ -213,7 +213,7 @@ TEST(WindlogQuantities, AreNoReasonToRefuseASessionWhereTheirTimesCannotBe) {
   test::tamper(file,
                "INSERT INTO quantity (time_ns, series, clock_ns, air_temperature_c) VALUES "
                "(9223372036854775807, 1, 0, 20), (4611686018427387902, 1, 0, 20)");
-  auto writer = WindlogWriter::open(file);
+  auto writer = Writer::open(file);
   ASSERT_TRUE(writer);
   EXPECT_TRUE(writer->begin_session({test::at_ms(20'000, test::kSampleUtc_ms + 20'000), "yuragi test", ""}));
 }
@@ -221,7 +221,7 @@ TEST(WindlogQuantities, AreNoReasonToRefuseASessionWhereTheirTimesCannotBe) {
 TEST(WindlogQuantities, SayWhenAFileWithoutAReadingWasBegun) {
   const test::TemporaryFolder folder;
   const auto began_of = [](const std::filesystem::path& file) {
-    auto writer = WindlogWriter::open(file);
+    auto writer = Writer::open(file);
     return writer ? writer->began().value() : std::nullopt;
   };
   write_no_reading(folder / "a.windlog", {}, 5000);
@@ -262,7 +262,7 @@ TEST(WindlogQuantities, AreNoneInAFileWithoutTheTable) {
 
 TEST(WindlogQuantities, ThatCannotBeAreNotWritten) {
   const test::TemporaryFolder folder;
-  auto writer = WindlogWriter::open(folder / "a.windlog");
+  auto writer = Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer);
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
   const auto mast = writer->add_sensor("mast", "nmea", "");
@@ -316,7 +316,7 @@ TEST(WindlogQuantities, OfADamagedTableHoldUpNoReading) {
     test::write_session(file, test::numbered_readings(5));
     test::tamper(file, damage);
 
-    auto writer = WindlogWriter::open(file);
+    auto writer = Writer::open(file);
     ASSERT_TRUE(writer);
     ASSERT_TRUE(writer->begin_session({test::at_ms(5000, test::kSampleUtc_ms + 5000), "yuragi test", ""}));
     const auto mast = writer->add_sensor("mast", "nmea", "");
@@ -333,7 +333,7 @@ TEST(WindlogQuantities, OfADamagedTableHoldUpNoReading) {
 TEST(WindlogQuantities, SurviveACopy) {
   const test::TemporaryFolder folder;
   write_quantities(folder / "a.windlog", {temperature_at(2000, 20.0)});
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   ASSERT_TRUE(reader->copy_to(folder / "b.windlog"));
   EXPECT_EQ(quantities_of(folder / "b.windlog").rows.size(), 1U);

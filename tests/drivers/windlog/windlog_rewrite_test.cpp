@@ -59,7 +59,7 @@ constexpr std::size_t kTexts = std::size_t{kSessions} * (1 + kSensorsWithPasswor
 constexpr std::size_t kReadings = std::size_t{kSessions} * 600;
 
 /// Twelve sessions with a configuration and many sensors each, in all but one of which is the password.
-Result<void, Failure> write_twelve_sessions(WindlogWriter& writer) {
+Result<void, Failure> write_twelve_sessions(Writer& writer) {
   const auto readings = test::numbered_readings(600);
   for (int session = 0; session < kSessions; ++session) {
     if (auto begun = writer.begin_session({readings[0].time, "yuragi test", configuration_of(session)}); !begun) {
@@ -72,7 +72,7 @@ Result<void, Failure> write_twelve_sessions(WindlogWriter& writer) {
       if (!added) return added.error();
       roof = *added;
     }
-    for (const wind::WindReading& reading : readings) {
+    for (const wind::Reading& reading : readings) {
       if (auto appended = writer.append(roof, reading); !appended) return appended;
     }
     if (auto committed = writer.commit(); !committed) return committed;
@@ -83,7 +83,7 @@ Result<void, Failure> write_twelve_sessions(WindlogWriter& writer) {
 class WindlogRewrite : public testing::Test {
  protected:
   void write() {
-    auto writer = WindlogWriter::open(file_);
+    auto writer = Writer::open(file_);
     ASSERT_TRUE(writer);
     ASSERT_TRUE(write_twelve_sessions(*writer));
     ASSERT_TRUE(writer->close());
@@ -119,7 +119,7 @@ TEST_F(WindlogRewrite, LeavesNoByteOfTheOldTextsAndEveryReading) {
     EXPECT_EQ(after[i].sensor, before[i].sensor);
     test::expect_same(after[i].reading, before[i].reading);
   }
-  auto reader = WindlogReader::open(file_);
+  auto reader = Reader::open(file_);
   ASSERT_TRUE(reader);
   ASSERT_EQ(reader->sessions().size(), std::size_t{kSessions});
   for (int session = 0; session < kSessions; ++session) {
@@ -152,7 +152,7 @@ TEST_F(WindlogRewrite, ChangesNothingTheSecondTime) {
 TEST_F(WindlogRewrite, CleansWhatAKilledRecorderLeft) {
   // What is on the disk while the recorder runs is what it leaves where it is killed.
   const test::TemporaryFolder running;
-  auto writer = WindlogWriter::open(running / "old.windlog");
+  auto writer = Writer::open(running / "old.windlog");
   ASSERT_TRUE(writer);
   ASSERT_TRUE(write_twelve_sessions(*writer));
   for (const char* suffix : {"", "-wal", "-shm"}) {
@@ -165,7 +165,7 @@ TEST_F(WindlogRewrite, CleansWhatAKilledRecorderLeft) {
 }
 
 TEST_F(WindlogRewrite, RefusesARecordingThatIsBeingWritten) {
-  auto writer = WindlogWriter::open(file_);
+  auto writer = Writer::open(file_);
   ASSERT_TRUE(writer);
   ASSERT_TRUE(write_twelve_sessions(*writer));
   const auto rewritten = rewrite_texts(file_, kWithoutPassword);

@@ -30,9 +30,9 @@ TEST(Windlog, GivesBackEveryReadingExactly) {
   std::uniform_real_distribution<double> speed(0.0, wind::kMaxPlausibleSpeed_m_s);
   std::uniform_real_distribution<double> direction(0.0, 360.0);
   std::uniform_int_distribution<std::int64_t> step_ns(1, 2'000'000'000);
-  std::vector<wind::WindReading> readings(3000);
+  std::vector<wind::Reading> readings(3000);
   Instant time = test::at_ms(5, test::kSampleUtc_ms);
-  for (wind::WindReading& reading : readings) {
+  for (wind::Reading& reading : readings) {
     const Nanoseconds step(step_ns(random));
     time = {time.mono + step, time.utc + step};
     reading.time = time;
@@ -60,7 +60,7 @@ TEST(Windlog, IsOneFileOnceItIsClosed) {
 
 TEST(Windlog, IsReadWhileItIsWritten) {
   const test::TemporaryFolder folder;
-  auto writer = WindlogWriter::open(folder / "a.windlog");
+  auto writer = Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer);
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
@@ -68,7 +68,7 @@ TEST(Windlog, IsReadWhileItIsWritten) {
   ASSERT_TRUE(writer->commit());
 
   // The reader sees what is committed, and what is committed later.
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader) << reader.error().message;
   EXPECT_TRUE(reader->next()->has_value());
   ASSERT_TRUE(writer->append(*sensor, test::reading_at(2, 2.0)));
@@ -83,7 +83,7 @@ TEST(Windlog, IsReadWhileItIsWritten) {
 
 TEST(Windlog, LosesWhatIsNotCommittedAndNothingElse) {
   const test::TemporaryFolder folder;
-  auto writer = WindlogWriter::open(folder / "a.windlog");
+  auto writer = Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
   ASSERT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
@@ -105,7 +105,7 @@ TEST(Windlog, LosesWhatIsNotCommittedAndNothingElse) {
 
 TEST(Windlog, RefusesAReadingThatIsNoneAndGoesOn) {
   const test::TemporaryFolder folder;
-  auto writer = WindlogWriter::open(folder / "a.windlog");
+  auto writer = Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");
   EXPECT_TRUE(writer->append(*sensor, test::reading_at(1, 1.0)));
@@ -119,12 +119,12 @@ TEST(Windlog, KeepsSessionsApartAndCountsTheGapInUtc) {
   const test::TemporaryFolder folder;
   // The second session's machine was started anew: its monotonic clock begins again. UTC says 60 s went by.
   test::write_session(folder / "a.windlog", {test::reading_at(500'000, 1.0), test::reading_at(501'000, 2.0)});
-  wind::WindReading later = test::reading_at(3000, 3.0);
+  wind::Reading later = test::reading_at(3000, 3.0);
   later.time.utc = UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms + 561'000));
   test::write_session(folder / "a.windlog", {later});
 
   // The third one's clock was set back by a day: it follows at once.
-  wind::WindReading earlier = test::reading_at(9000, 4.0);
+  wind::Reading earlier = test::reading_at(9000, 4.0);
   earlier.time.utc -= 24h;
   test::write_session(folder / "a.windlog", {earlier});
 
@@ -137,7 +137,7 @@ TEST(Windlog, KeepsSessionsApartAndCountsTheGapInUtc) {
 
 TEST(Windlog, FollowsTheMonotonicClockWhenUtcJumps) {
   const test::TemporaryFolder folder;
-  std::vector<wind::WindReading> readings = test::numbered_readings(20);
+  std::vector<wind::Reading> readings = test::numbered_readings(20);
   for (std::size_t i = 10; i < readings.size(); ++i) readings[i].time.utc += 1h;
   test::write_session(folder / "a.windlog", readings);
   EXPECT_EQ(test::read_all(folder / "a.windlog").back().log_time, 1900ms);
@@ -146,7 +146,7 @@ TEST(Windlog, FollowsTheMonotonicClockWhenUtcJumps) {
 TEST(Windlog, SeeksByLogTimeAndByUtc) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(2000));
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   EXPECT_EQ(reader->duration(), 199'900ms);
 
@@ -168,7 +168,7 @@ TEST(Windlog, SeeksByLogTimeAndByUtc) {
 
 /// Two sensors: one with a reading every 10 ms, and one with a reading 5 ms after every thousandth of them.
 void write_two_sensors(const std::filesystem::path& file, int count) {
-  auto writer = WindlogWriter::open(file);
+  auto writer = Writer::open(file);
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
   const auto often = writer->add_sensor("often", "synthetic", "");
   const auto seldom = writer->add_sensor("seldom", "synthetic", "");
@@ -187,7 +187,7 @@ TEST(Windlog, MergesSensorsByTimeFromAnyPlaceOn) {
   ASSERT_EQ(all.size(), 3003U);
   EXPECT_TRUE(std::ranges::is_sorted(all, {}, &LoggedReading::log_time));
 
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   for (const Nanoseconds from : {0ms, 5ms, 9'999ms, 10'005ms, 20'006ms}) {
     reader->seek(from);
     const auto expected = std::ranges::lower_bound(all, from, {}, &LoggedReading::log_time);
@@ -204,7 +204,7 @@ TEST(Windlog, MergesSensorsByTimeFromAnyPlaceOn) {
 TEST(Windlog, GivesTheReadingsOfChosenSensorsOnly) {
   const test::TemporaryFolder folder;
   write_two_sensors(folder / "a.windlog", 3000);
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader->choose({false, true}));
   for (const Nanoseconds expected : {5ms, 10'005ms, 20'005ms}) EXPECT_EQ(reader->next()->value().log_time, expected);
   EXPECT_FALSE(reader->next()->has_value());
@@ -215,7 +215,7 @@ TEST(Windlog, GivesTheReadingsOfChosenSensorsOnly) {
 TEST(Windlog, AMomentIsFoundInTheSeriesOfEachSensor) {
   const test::TemporaryFolder folder;
   write_two_sensors(folder / "a.windlog", 3000);
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   const UtcTime begin{std::chrono::milliseconds(test::kSampleUtc_ms)};
   for (const Nanoseconds at : {0ms, 3ms, 5ms, 7ms, 10'001ms, 29'989ms}) {
     reader->seek(at);
@@ -225,13 +225,13 @@ TEST(Windlog, AMomentIsFoundInTheSeriesOfEachSensor) {
 
 TEST(Windlog, ReadsOnAsReadingsOfSeveralSensorsComeAndInOrder) {
   const test::TemporaryFolder folder;
-  auto writer = WindlogWriter::open(folder / "a.windlog");
+  auto writer = Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto a = writer->add_sensor("a", "synthetic", "");
   const auto b = writer->add_sensor("b", "synthetic", "");
   ASSERT_TRUE(writer->append(*a, test::reading_at(0, 1.0)));
   ASSERT_TRUE(writer->commit());
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   Nanoseconds last{-1};
   std::size_t count = 0;
   for (int i = 1; i < 200; ++i) {
@@ -250,7 +250,7 @@ TEST(Windlog, ReadsOnAsReadingsOfSeveralSensorsComeAndInOrder) {
 TEST(Windlog, ASessionThatBeginsWhileItIsReadIsLeftOut) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(5));
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   test::write_session(folder / "a.windlog", test::numbered_readings(5));
   std::size_t count = 0;
   while (reader->next()->has_value()) ++count;
@@ -260,7 +260,7 @@ TEST(Windlog, ASessionThatBeginsWhileItIsReadIsLeftOut) {
 
 TEST(Windlog, OfOneSensorAtOneTimeKeepsEveryReading) {
   const test::TemporaryFolder folder;
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   for (int i = 0; i < 100; ++i) readings.push_back(test::reading_at(i % 3 == 0 ? 2000 : 1000, i));
   readings.insert(readings.begin(), test::reading_at(1000, 100.0));
   test::write_session(folder / "a.windlog", readings);
@@ -273,12 +273,12 @@ TEST(Windlog, TakesAsManyBytesAReadingAsItsFormatSays) {
   const test::TemporaryFolder folder;
   for (const bool has_gust : {false, true}) {
     const auto file = folder / (has_gust ? "gust.windlog" : "plain.windlog");
-    auto writer = WindlogWriter::open(file);
+    auto writer = Writer::open(file);
     ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
     constexpr int kCount = 20'000;
     const std::array<std::int64_t, 2> sensors = {*writer->add_sensor("a", "", ""), *writer->add_sensor("b", "", "")};
     for (int i = 0; i < kCount; ++i) {
-      wind::WindReading reading = test::reading_at(500'000LL * i, 0.1 * (i % 77));  // over months
+      wind::Reading reading = test::reading_at(500'000LL * i, 0.1 * (i % 77));  // over months
       reading.time.utc += std::chrono::nanoseconds(i % 50'000);  // the two clocks read one after the other
       reading.direction_deg = 0.3 * (i % 1000);
       if (has_gust) reading.gust_m_s = reading.speed_m_s + 0.7;
@@ -314,7 +314,7 @@ TEST(Windlog, CanBeAskedInSqlAsOneTable) {
 TEST(Windlog, RemembersWhatMadeIt) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(1));
-  auto reader = WindlogReader::open(folder / "a.windlog");
+  auto reader = Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
   ASSERT_EQ(reader->sessions().size(), 1U);
   EXPECT_EQ(reader->sessions()[0].software, "yuragi test");
@@ -337,7 +337,7 @@ TEST(Windlog, WriterRefusesAForeignDatabaseAndLeavesItAsItWas) {
     auto foreign = sqlite::Database::open(folder / "other.db", sqlite::Access::kReadWrite);
     ASSERT_TRUE(foreign->run("CREATE TABLE precious (x); INSERT INTO precious VALUES (1)"));
   }
-  const auto writer = WindlogWriter::open(folder / "other.db");
+  const auto writer = Writer::open(folder / "other.db");
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("not a Yuragi recording"), std::string::npos) << writer.error().message;
   auto foreign = sqlite::Database::open(folder / "other.db", sqlite::Access::kReadOnly);
@@ -350,7 +350,7 @@ TEST(Windlog, WriterRefusesAFileThatIsNoDatabase) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "letter.txt") << "Dear friend, the wind here is steady, and I think of you often.\n";
   const auto before = std::filesystem::file_size(folder / "letter.txt");
-  const auto writer = WindlogWriter::open(folder / "letter.txt");
+  const auto writer = Writer::open(folder / "letter.txt");
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("letter.txt"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(folder / "letter.txt"), before);
@@ -363,16 +363,16 @@ TEST(Windlog, ANewerFormatIsRefusedByWriterAndReader) {
     auto database = sqlite::Database::open(folder / "a.windlog", sqlite::Access::kReadWrite);
     ASSERT_TRUE(database->run("PRAGMA user_version = 3"));
   }
-  const auto writer = WindlogWriter::open(folder / "a.windlog");
+  const auto writer = Writer::open(folder / "a.windlog");
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("newer"), std::string::npos);
-  const auto reader = WindlogReader::open(folder / "a.windlog");
+  const auto reader = Reader::open(folder / "a.windlog");
   ASSERT_FALSE(reader);
   EXPECT_NE(reader.error().message.find("format 3"), std::string::npos);
 }
 
 TEST(Windlog, WriterSaysWhereItCannotWrite) {
-  const auto writer = WindlogWriter::open("/nonexistent/folder/a.windlog");
+  const auto writer = Writer::open("/nonexistent/folder/a.windlog");
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("/nonexistent/folder/a.windlog"), std::string::npos);
   EXPECT_NE(writer.error().message.find("folder"), std::string::npos);
@@ -380,7 +380,7 @@ TEST(Windlog, WriterSaysWhereItCannotWrite) {
 
 TEST(Windlog, AFullDiskUndoesToTheLastCommitAndTheWriterLivesOn) {
   const test::TemporaryFolder folder;
-  auto writer = WindlogWriter::open(folder / "a.windlog");
+  auto writer = Writer::open(folder / "a.windlog");
   ASSERT_TRUE(writer);
   ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
   const auto sensor = writer->add_sensor("mast", "synthetic", "");

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kTileSize = 128;
 constexpr double kTilePeriod_m = 64.0;
 
-NoiseTile2 plain_tile() {
+Tile2 plain_tile() {
   return make_noise_2d({.size = kTileSize, .beta = 1.0, .meaning = BetaMeaning::kRadial, .seed = 6}).value();
 }
 
@@ -27,7 +27,7 @@ double cycles_of(std::size_t i) {
 }
 
 TEST(BandLimitedTileTest, TheBaseLevelIsThePlainTileBitForBit) {
-  const NoiseTile2 plain = plain_tile();
+  const Tile2 plain = plain_tile();
   const BandLimitedTile2 tile(plain);
   EXPECT_EQ(tile.level(0).values, plain.values);
   EXPECT_EQ(tile.level_count(), 4U);
@@ -115,7 +115,7 @@ TEST(BandLimitedTileTest, InAStormNoPlaceJittersFromTickToTick) {
 }
 
 TEST(BandLimitedTileTest, RefusesWhatIsNoTileAndTooManyLevels) {
-  EXPECT_THROW(BandLimitedTile2(NoiseTile2{3, std::vector<float>(9)}), std::invalid_argument);
+  EXPECT_THROW(BandLimitedTile2(Tile2{3, std::vector<float>(9)}), std::invalid_argument);
   EXPECT_THROW(BandLimitedTile2(plain_tile(), 0), std::invalid_argument);
   EXPECT_THROW(BandLimitedTile2(plain_tile(), 9), std::invalid_argument);
 }

@@ -55,7 +55,7 @@ TEST(LineCutTest, MissesItselfByAtLeastAsMuchAsItSays) {
 }
 
 /// What stands along the line, a sample each `step_m`.
-std::vector<float> along(const NoiseTile2& tile, std::size_t count, double step_m) {
+std::vector<float> along(const Tile2& tile, std::size_t count, double step_m) {
   std::vector<float> values;
   LineCut cut;
   for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +66,7 @@ std::vector<float> along(const NoiseTile2& tile, std::size_t count, double step_
 }
 
 TEST(LineCutTest, ItsLongestRepeatIsPoorWhereARowRepeatsExactly) {
-  const NoiseTile2 tile = make_noise_2d({.size = 256, .seed = 2}).value();
+  const Tile2 tile = make_noise_2d({.size = 256, .seed = 2}).value();
   const std::vector<float> line = along(tile, std::size_t{100} * 256, 1.0);
   const auto correlation_at = [&line](std::size_t lag) {
     double both = 0.0;
@@ -96,7 +96,7 @@ TEST(LineCutTest, HasTheSpectrumThatTransectAsksFor) {
   for (const double beta : {1.0, 5.0 / 3.0, 2.0}) {
     std::vector<double> mean(kWindow / 2 + 1, 0.0);
     for (std::uint64_t seed = 0; seed < 2; ++seed) {
-      const NoiseTile2 tile = make_noise_2d({.size = 1024, .beta = beta, .seed = seed}).value();
+      const Tile2 tile = make_noise_2d({.size = 1024, .beta = beta, .seed = seed}).value();
       const std::vector<float> line = along(tile, 32 * kWindow, kLinePeriod_m / 1024.0);
       fft::RealFft fft(1, kWindow);
       for (std::size_t begin = 0; begin < line.size(); begin += kWindow) {

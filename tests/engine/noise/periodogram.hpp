@@ -10,7 +10,7 @@
 namespace yuragi::test {
 
 /// |F(k)|^2 of a periodic line, k = 0 .. size / 2, unnormalised.
-inline std::vector<double> line_power(const noise::NoiseTile1& tile) {
+inline std::vector<double> line_power(const noise::Tile1& tile) {
   fft::RealFft fft(1, tile.size());
   for (std::size_t i = 0; i < tile.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
   fft.forward();
@@ -20,7 +20,7 @@ inline std::vector<double> line_power(const noise::NoiseTile1& tile) {
 }
 
 /// |F(kx, kz)|^2 of a square, in the half spectrum's layout (kz outer, size / 2 + 1 columns).
-inline std::vector<double> square_power(const noise::NoiseTile2& tile) {
+inline std::vector<double> square_power(const noise::Tile2& tile) {
   fft::RealFft fft(2, tile.size);
   for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
   fft.forward();
@@ -30,7 +30,7 @@ inline std::vector<double> square_power(const noise::NoiseTile2& tile) {
 }
 
 /// The mean of |F|^2 in the integer rings round(|k|) = 0 .. size / 2, each mode of the full spectrum counted once.
-inline std::vector<double> ring_power(const noise::NoiseTile2& tile) {
+inline std::vector<double> ring_power(const noise::Tile2& tile) {
   const std::vector<double> power = square_power(tile);
   const std::size_t half = tile.size / 2;
   std::vector<double> sums(half + 1, 0.0);
@@ -50,7 +50,7 @@ inline std::vector<double> ring_power(const noise::NoiseTile2& tile) {
 }
 
 /// The mean periodogram of a square's rows (along x).
-inline std::vector<double> row_power(const noise::NoiseTile2& tile) {
+inline std::vector<double> row_power(const noise::Tile2& tile) {
   std::vector<double> mean(tile.size / 2 + 1, 0.0);
   fft::RealFft fft(1, tile.size);
   for (std::size_t z = 0; z < tile.size; ++z) {
@@ -63,7 +63,7 @@ inline std::vector<double> row_power(const noise::NoiseTile2& tile) {
 }
 
 /// The mean of |F|^2 of a cube in the integer shells round(|k|) = 0 .. size / 2, each mode of the full spectrum once.
-inline std::vector<double> shell_power(const noise::NoiseTile3& tile) {
+inline std::vector<double> shell_power(const noise::Tile3& tile) {
   fft::RealFft fft(3, tile.size);
   for (std::size_t i = 0; i < tile.values.size(); ++i) fft.samples()[i] = static_cast<double>(tile.values[i]);
   fft.forward();
@@ -86,7 +86,7 @@ inline std::vector<double> shell_power(const noise::NoiseTile3& tile) {
 }
 
 /// The mean periodogram of a cube's rows (along x).
-inline std::vector<double> row_power(const noise::NoiseTile3& tile) {
+inline std::vector<double> row_power(const noise::Tile3& tile) {
   std::vector<double> mean(tile.size / 2 + 1, 0.0);
   fft::RealFft fft(1, tile.size);
   for (std::size_t row = 0; row < tile.size * tile.size; ++row) {

@@ -83,17 +83,17 @@ TEST(SpectralNoise, StandsOnTheGrid) {
 }
 
 TEST(SpectralNoise, SameSpecGivesTheSameBitsAndEachPartOfItMatters) {
-  const NoiseSpec spec{.size = 64, .seed = 5};
+  const Spec spec{.size = 64, .seed = 5};
   EXPECT_EQ(make_noise_1d(spec).value().values, make_noise_1d(spec).value().values);
   EXPECT_EQ(make_noise_2d(spec).value().values, make_noise_2d(spec).value().values);
 
-  NoiseSpec other_seed = spec;
+  Spec other_seed = spec;
   other_seed.seed = 6;
-  NoiseSpec other_beta = spec;
+  Spec other_beta = spec;
   other_beta.beta = 1.5;
-  NoiseSpec other_meaning = spec;
+  Spec other_meaning = spec;
   other_meaning.meaning = BetaMeaning::kRadial;
-  for (const NoiseSpec& other : {other_seed, other_beta, other_meaning}) {
+  for (const Spec& other : {other_seed, other_beta, other_meaning}) {
     EXPECT_NE(make_noise_2d(spec).value().values, make_noise_2d(other).value().values);
   }
 }
@@ -250,29 +250,29 @@ TEST(SpectralNoise, ALargerTileOfTheSameSeedRepeatsTheLargeWavesOfASmallerOne) {
 TEST(SpectralNoise, RefusesASizeThatIsNotAllowed) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{4}, std::size_t{12}, std::size_t{100},
                                  kMaxNoiseSize1 * 2, std::numeric_limits<std::size_t>::max()}) {
-    EXPECT_EQ(make_noise_1d({.size = size}).error(), NoiseError::kSizeNotAllowed) << size;
-    EXPECT_EQ(make_noise_2d({.size = size}).error(), NoiseError::kSizeNotAllowed) << size;
-    EXPECT_EQ(make_noise_3d({.size = size}).error(), NoiseError::kSizeNotAllowed) << size;
+    EXPECT_EQ(make_noise_1d({.size = size}).error(), Error::kSizeNotAllowed) << size;
+    EXPECT_EQ(make_noise_2d({.size = size}).error(), Error::kSizeNotAllowed) << size;
+    EXPECT_EQ(make_noise_3d({.size = size}).error(), Error::kSizeNotAllowed) << size;
   }
-  EXPECT_EQ(make_noise_2d({.size = kMaxNoiseSize2 * 2}).error(), NoiseError::kSizeNotAllowed);
-  EXPECT_EQ(make_noise_3d({.size = kMaxNoiseSize3 * 2}).error(), NoiseError::kSizeNotAllowed);
+  EXPECT_EQ(make_noise_2d({.size = kMaxNoiseSize2 * 2}).error(), Error::kSizeNotAllowed);
+  EXPECT_EQ(make_noise_3d({.size = kMaxNoiseSize3 * 2}).error(), Error::kSizeNotAllowed);
 }
 
 TEST(SpectralNoise, RefusesABetaOutOfRange) {
   for (const double beta : {-0.001, 8.001, std::numeric_limits<double>::quiet_NaN(),
                             std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(make_noise_1d({.size = 64, .beta = beta}).error(), NoiseError::kBetaOutOfRange) << beta;
-    EXPECT_EQ(make_noise_2d({.size = 64, .beta = beta}).error(), NoiseError::kBetaOutOfRange) << beta;
+    EXPECT_EQ(make_noise_1d({.size = 64, .beta = beta}).error(), Error::kBetaOutOfRange) << beta;
+    EXPECT_EQ(make_noise_2d({.size = 64, .beta = beta}).error(), Error::kBetaOutOfRange) << beta;
   }
 }
 
 TEST(SpectralNoise, RefusesATransectThatIsFlatterThanATileCanHave) {
   for (const double beta : {0.0, 0.3, 0.599}) {
-    EXPECT_EQ(make_noise_2d({.size = 64, .beta = beta}).error(), NoiseError::kTransectTooFlat) << beta;
+    EXPECT_EQ(make_noise_2d({.size = 64, .beta = beta}).error(), Error::kTransectTooFlat) << beta;
     EXPECT_TRUE(make_noise_2d({.size = 64, .beta = beta, .meaning = BetaMeaning::kRadial}).has_value()) << beta;
   }
   for (const double beta : {0.0, 0.6, 0.999}) {
-    EXPECT_EQ(make_noise_3d({.size = 8, .beta = beta}).error(), NoiseError::kTransectTooFlat) << beta;
+    EXPECT_EQ(make_noise_3d({.size = 8, .beta = beta}).error(), Error::kTransectTooFlat) << beta;
     EXPECT_TRUE(make_noise_3d({.size = 8, .beta = beta, .meaning = BetaMeaning::kRadial}).has_value()) << beta;
     EXPECT_TRUE(make_noise_1d({.size = 64, .beta = beta}).has_value()) << beta;
   }
@@ -282,8 +282,8 @@ TEST(SpectralNoise, RefusesATransectThatIsFlatterThanATileCanHave) {
 
 TEST(SpectralNoise, RefusesAnIntegralScaleThatIsNone) {
   for (const double scale : {-1.0, 0.9e-6, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(make_noise_1d({.size = 64, .integral_scale = scale}).error(), NoiseError::kIntegralScaleOutOfRange);
-    EXPECT_EQ(make_noise_3d({.size = 8, .integral_scale = scale}).error(), NoiseError::kIntegralScaleOutOfRange);
+    EXPECT_EQ(make_noise_1d({.size = 64, .integral_scale = scale}).error(), Error::kIntegralScaleOutOfRange);
+    EXPECT_EQ(make_noise_3d({.size = 8, .integral_scale = scale}).error(), Error::kIntegralScaleOutOfRange);
   }
 }
 
@@ -296,21 +296,21 @@ TEST(SpectralNoise, WithoutAnIntegralScaleOrWithAnEndlessOneIsThePurePowerLaw) {
 }
 
 TEST(SpectralNoise, TheSmallestIntegralScaleIsWhiteNoise) {
-  const NoiseTile2 tile = make_noise_2d({.size = 64, .beta = 8.0, .integral_scale = kMinNoiseIntegralScale}).value();
+  const Tile2 tile = make_noise_2d({.size = 64, .beta = 8.0, .integral_scale = kMinNoiseIntegralScale}).value();
   EXPECT_NEAR(moments_of(tile.values).variance, 1.0, 0x1p-18);
   EXPECT_NEAR(test::falling_exponent(test::ring_power(tile), 4, 32), 0.0, 0.15);
 }
 
 TEST(SpectralNoise, EveryErrorHasANameAndAnExplanationThatAnUncheckedCallerGets) {
-  EXPECT_EQ(name_of(NoiseError::kSizeNotAllowed), "size-not-allowed");
-  EXPECT_EQ(name_of(NoiseError::kBetaOutOfRange), "beta-out-of-range");
-  EXPECT_EQ(name_of(NoiseError::kTransectTooFlat), "transect-too-flat");
-  EXPECT_EQ(name_of(NoiseError::kIntegralScaleOutOfRange), "integral-scale-out-of-range");
+  EXPECT_EQ(name_of(Error::kSizeNotAllowed), "size-not-allowed");
+  EXPECT_EQ(name_of(Error::kBetaOutOfRange), "beta-out-of-range");
+  EXPECT_EQ(name_of(Error::kTransectTooFlat), "transect-too-flat");
+  EXPECT_EQ(name_of(Error::kIntegralScaleOutOfRange), "integral-scale-out-of-range");
   try {
     static_cast<void>(make_noise_1d({.size = 7}).value());
     FAIL() << "should have thrown";
   } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(error.what(), explain(NoiseError::kSizeNotAllowed));
+    EXPECT_EQ(error.what(), explain(Error::kSizeNotAllowed));
   }
 }
 

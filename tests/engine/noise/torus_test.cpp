@@ -25,7 +25,7 @@ std::uint32_t exact_phase(long double distance_m) {
       static_cast<std::int64_t>(std::llrint((periods - std::floor(periods)) * 4294967296.0L)));
 }
 
-NoiseTile2 some_tile() {
+Tile2 some_tile() {
   return make_noise_2d({.size = 64, .seed = 3}).value();
 }
 
@@ -86,7 +86,7 @@ TEST(TorusTravelTest, ThereAndBackIsNowhere) {
 }
 
 TEST(ReadNoiseTest, GivesTheSamplesThemselves) {
-  const NoiseTile2 tile = some_tile();
+  const Tile2 tile = some_tile();
   const std::uint32_t cell = 1U << 26U;  // 2^32 / 64
   for (std::uint32_t z = 0; z < 64; ++z) {
     for (std::uint32_t x = 0; x < 64; ++x) EXPECT_EQ(read_noise(tile, {x * cell, z * cell}), tile.at(x, z));
@@ -94,7 +94,7 @@ TEST(ReadNoiseTest, GivesTheSamplesThemselves) {
 }
 
 TEST(ReadNoiseTest, IsBilinearBetweenThem) {
-  const NoiseTile2 tile = some_tile();
+  const Tile2 tile = some_tile();
   const std::uint32_t cell = 1U << 26U;
   const float middle = (tile.at(5, 9) + tile.at(6, 9) + tile.at(5, 10) + tile.at(6, 10)) / 4.0F;
   EXPECT_NEAR(read_noise(tile, {5 * cell + cell / 2, 9 * cell + cell / 2}), middle, 1e-6F);
@@ -103,8 +103,8 @@ TEST(ReadNoiseTest, IsBilinearBetweenThem) {
 }
 
 TEST(ReadNoiseTest, HasNoSeam) {
-  const NoiseTile2 tile = some_tile();
-  const NoiseTile1 line = make_noise_1d({.size = 64, .seed = 3}).value();
+  const Tile2 tile = some_tile();
+  const Tile1 line = make_noise_1d({.size = 64, .seed = 3}).value();
   const std::uint32_t half_cell = 1U << 25U;
   EXPECT_NEAR(read_noise(tile, {0U - half_cell, 0}), (tile.at(63, 0) + tile.at(0, 0)) / 2.0F, 1e-6F);
   EXPECT_NEAR(read_noise(tile, {0, 0U - half_cell}), (tile.at(0, 63) + tile.at(0, 0)) / 2.0F, 1e-6F);
@@ -112,7 +112,7 @@ TEST(ReadNoiseTest, HasNoSeam) {
 }
 
 TEST(ReadNoiseTest, NeverChangesFasterThanItsSteepestCell) {
-  const NoiseTile1 line = make_noise_1d({.size = 64, .seed = 5}).value();
+  const Tile1 line = make_noise_1d({.size = 64, .seed = 5}).value();
   float steepest = 0.0F;
   for (std::size_t i = 0; i < 64; ++i) {
     steepest = std::max(steepest, std::abs(line.values[(i + 1) % 64] - line.values[i]));
@@ -129,15 +129,15 @@ TEST(ReadNoiseTest, NeverChangesFasterThanItsSteepestCell) {
 }
 
 TEST(IsReadableTest, AsksForAPowerOfTwoWithAllItsValues) {
-  EXPECT_TRUE(is_readable(NoiseTile1{std::vector<float>(2)}));
-  EXPECT_TRUE(is_readable(NoiseTile2{4, std::vector<float>(16)}));
-  EXPECT_FALSE(is_readable(NoiseTile1{}));
-  EXPECT_FALSE(is_readable(NoiseTile1{std::vector<float>(1)}));
-  EXPECT_FALSE(is_readable(NoiseTile1{std::vector<float>(12)}));
-  EXPECT_FALSE(is_readable(NoiseTile1{std::vector<float>(131072)}));
-  EXPECT_FALSE(is_readable(NoiseTile2{}));
-  EXPECT_FALSE(is_readable(NoiseTile2{4, std::vector<float>(15)}));
-  EXPECT_FALSE(is_readable(NoiseTile2{3, std::vector<float>(9)}));
+  EXPECT_TRUE(is_readable(Tile1{std::vector<float>(2)}));
+  EXPECT_TRUE(is_readable(Tile2{4, std::vector<float>(16)}));
+  EXPECT_FALSE(is_readable(Tile1{}));
+  EXPECT_FALSE(is_readable(Tile1{std::vector<float>(1)}));
+  EXPECT_FALSE(is_readable(Tile1{std::vector<float>(12)}));
+  EXPECT_FALSE(is_readable(Tile1{std::vector<float>(131072)}));
+  EXPECT_FALSE(is_readable(Tile2{}));
+  EXPECT_FALSE(is_readable(Tile2{4, std::vector<float>(15)}));
+  EXPECT_FALSE(is_readable(Tile2{3, std::vector<float>(9)}));
 }
 
 }  // namespace

@@ -13,14 +13,14 @@
 namespace yuragi::noise {
 namespace {
 
-constexpr NoiseSpec kOctaveSpec{.size = 64, .seed = 11, .from_cycles = 4.0, .to_cycles = 8.0};
+constexpr Spec kOctaveSpec{.size = 64, .seed = 11, .from_cycles = 4.0, .to_cycles = 8.0};
 
 VectorNoise2 turning_noise() {
   return VectorNoiseMaker().make(kOctaveSpec, true).value();
 }
 
-NoiseTile2 turned_by(const NoiseTile2& first, const NoiseTile2& quarter, double angle_rad) {
-  NoiseTile2 tile = first;
+Tile2 turned_by(const Tile2& first, const Tile2& quarter, double angle_rad) {
+  Tile2 tile = first;
   const auto cosine = static_cast<float>(std::cos(angle_rad));
   const auto sine = static_cast<float>(std::sin(angle_rad));
   for (std::size_t i = 0; i < tile.values.size(); ++i) {
@@ -30,7 +30,7 @@ NoiseTile2 turned_by(const NoiseTile2& first, const NoiseTile2& quarter, double 
 }
 
 /// Of a tile with another one that is read (x, z) samples further on.
-double likeness(const NoiseTile2& a, const NoiseTile2& b, std::size_t x, std::size_t z) {
+double likeness(const Tile2& a, const Tile2& b, std::size_t x, std::size_t z) {
   double sum = 0.0;
   for (std::size_t row = 0; row < a.size; ++row) {
     for (std::size_t column = 0; column < a.size; ++column) {
@@ -56,7 +56,7 @@ TEST(VectorNoise, LacksPowerAlongItsWaves) {
   double all = 0.0;
   VectorNoiseMaker maker;
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    NoiseSpec spec = kOctaveSpec;
+    Spec spec = kOctaveSpec;
     spec.seed = seed;
     const VectorNoise2 noise = maker.make(spec, false).value();
     fft::RealFft x(2, spec.size);
@@ -108,7 +108,7 @@ TEST(VectorNoise, KeepsThePowerOfItsModesWhileItTurns) {
 TEST(VectorNoise, IsLikeItselfByTheCosineOfItsTurnAndStaysWhereItIs) {
   const VectorNoise2 noise = turning_noise();
   for (const double angle_rad : {0.0, 0.5, 1.0, 0.5 * std::numbers::pi, 3.0}) {
-    const NoiseTile2 now = turned_by(noise.first.x, noise.quarter.x, angle_rad);
+    const Tile2 now = turned_by(noise.first.x, noise.quarter.x, angle_rad);
     EXPECT_NEAR(likeness(noise.first.x, now, 0, 0), std::cos(angle_rad), 0.05);
     // A field that drifted would be more like its beginning on one side than on the other.
     EXPECT_NEAR(likeness(noise.first.x, now, 2, 0), likeness(noise.first.x, now, 62, 0), 0.3);
@@ -118,11 +118,11 @@ TEST(VectorNoise, IsLikeItselfByTheCosineOfItsTurnAndStaysWhereItIs) {
 
 TEST(VectorNoise, RefusesWhatItCannotMake) {
   VectorNoiseMaker maker;
-  const auto error_of = [&](const NoiseSpec& spec) { return maker.make(spec, true).error(); };
-  EXPECT_EQ(error_of({.size = 65}), NoiseError::kSizeNotAllowed);
-  EXPECT_EQ(error_of({.size = 64, .beta = -1.0}), NoiseError::kBetaOutOfRange);
-  EXPECT_EQ(error_of({.size = 64, .beta = 2.0, .from_cycles = 4.0, .to_cycles = 8.0}), NoiseError::kBetaOutOfRange);
-  EXPECT_EQ(error_of({.size = 64, .from_cycles = 40.0, .to_cycles = 80.0}), NoiseError::kBandOutOfRange);
+  const auto error_of = [&](const Spec& spec) { return maker.make(spec, true).error(); };
+  EXPECT_EQ(error_of({.size = 65}), Error::kSizeNotAllowed);
+  EXPECT_EQ(error_of({.size = 64, .beta = -1.0}), Error::kBetaOutOfRange);
+  EXPECT_EQ(error_of({.size = 64, .beta = 2.0, .from_cycles = 4.0, .to_cycles = 8.0}), Error::kBetaOutOfRange);
+  EXPECT_EQ(error_of({.size = 64, .from_cycles = 40.0, .to_cycles = 80.0}), Error::kBandOutOfRange);
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ class GridSampleJobOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(GridSampleJobOnEachRow);
 
 TEST_P(GridSampleJobOnEachRow, ReadsTheSameBitsAsPlaceByPlace) {
-  const noise::NoiseTile2 fine = noise::make_noise_2d({.size = 256, .seed = 1}).value();
-  const noise::NoiseTile2 coarse = noise::make_noise_2d({.size = 16, .seed = 2}).value();
+  const noise::Tile2 fine = noise::make_noise_2d({.size = 256, .seed = 1}).value();
+  const noise::Tile2 coarse = noise::make_noise_2d({.size = 16, .seed = 2}).value();
   const math::RandomStream random(3, math::stream_id("grids to read"));
   std::uint64_t drawn = 0;
   const auto any_phase = [&] { return static_cast<std::uint32_t>(random.uniform(drawn++) * 4294967296.0); };
@@ -86,7 +86,7 @@ TEST_P(GridSampleJobOnEachRow, ReadsTheSameBitsAsPlaceByPlace) {
 
 TEST_P(GridSampleJobOnEachRow, ReadsNothingBehindTheLastSample) {
   // A tile in a vector of its own, so that a sanitizer sees; all columns in its last samples, all rows in its last two.
-  const noise::NoiseTile2 tile = noise::make_noise_2d({.size = 64, .seed = 5}).value();
+  const noise::Tile2 tile = noise::make_noise_2d({.size = 64, .seed = 5}).value();
   for (std::uint32_t first = 0; first < 64; ++first) {
     GridAxes axes;
     for (std::uint32_t i = 0; i < 32; ++i) axes.column_x.push_back((first << 26U) + (i << 23U));
@@ -100,7 +100,7 @@ TEST_P(GridSampleJobOnEachRow, ReadsNothingBehindTheLastSample) {
 }
 
 TEST(GridSampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
-  const noise::NoiseTile2 tile = noise::make_noise_2d({.size = 16, .seed = 1}).value();
+  const noise::Tile2 tile = noise::make_noise_2d({.size = 16, .seed = 1}).value();
   const GridAxes axes = grid_axes(20, 3, 0.0, 0.01);
   std::vector<float> out(60, -7.0F);
   const GridNoiseLayer good_layer{&tile, axes.column_x, axes.row_z};

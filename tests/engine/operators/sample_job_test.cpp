@@ -21,7 +21,7 @@ constexpr double kFieldPeriod_m = 64.0;
 constexpr std::size_t kTileSize = 128;
 constexpr double kCell_m = kFieldPeriod_m / static_cast<double>(kTileSize);
 
-noise::NoiseTile2 wind_tile() {
+noise::Tile2 wind_tile() {
   return noise::make_noise_2d({.size = kTileSize, .seed = 7}).value();
 }
 
@@ -44,7 +44,7 @@ Places grid(double x_m, double z_m) {
   return places;
 }
 
-std::vector<float> read(const noise::NoiseTile2& tile, const Places& places, noise::TorusPhase offset) {
+std::vector<float> read(const noise::Tile2& tile, const Places& places, noise::TorusPhase offset) {
   std::vector<float> values(places.x.size());
   const NoiseLayer layer{.tile = &tile, .place_x = places.x, .place_z = places.z, .offset = offset};
   const SampleJob job{.layers = {&layer, 1}, .out = values};
@@ -67,7 +67,7 @@ class SampleJobOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(SampleJobOnEachRow);
 
 TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const math::RandomStream random(1, math::stream_id("places"));
   const noise::TorusPhase offset{123'456'789U, 3'210'987'654U};
   for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 64U, 1000U}) {
@@ -87,7 +87,7 @@ TEST_P(SampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
 }
 
 TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   const std::vector<float> plain = read(tile, places, {});
   std::vector<float> out(plain.size());
@@ -110,7 +110,7 @@ TEST_P(SampleJobOnEachRow, ScalesAndKeepsWithinTheRange) {
 }
 
 TEST_P(SampleJobOnEachRow, APlacesWeightMultipliesTheLayers) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const math::RandomStream random(2, math::stream_id("weights of places"));
   const noise::TorusPhase offset{987'654'321U, 123'456'789U};
   for (const std::size_t count : {1U, 15U, 16U, 17U, 1000U}) {
@@ -136,7 +136,7 @@ TEST_P(SampleJobOnEachRow, APlacesWeightMultipliesTheLayers) {
 }
 
 TEST_P(SampleJobOnEachRow, AWeightOfOneAtEachPlaceChangesNoBit) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const Places places = grid(0.3, 0.2);
   const std::vector<float> ones(places.x.size(), 1.0F);
   std::vector<float> out(places.x.size());
@@ -146,7 +146,7 @@ TEST_P(SampleJobOnEachRow, AWeightOfOneAtEachPlaceChangesNoBit) {
 }
 
 TEST(SampleJobTest, RefusesWeightsThatAreNotOneForEachPlace) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   const std::vector<float> too_few(places.x.size() - 1, 1.0F);
   std::vector<float> out(places.x.size());
@@ -155,7 +155,7 @@ TEST(SampleJobTest, RefusesWeightsThatAreNotOneForEachPlace) {
 }
 
 TEST(SampleJobTest, AFieldThatHasMovedByXIsReadAtXBack) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const std::vector<float> at_first = read(tile, grid(0.0, 0.0), {});
   for (int azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 30) {
     // The wind blows toward the azimuth for 2 s: the field goes 12 m that way.
@@ -179,7 +179,7 @@ TEST(SampleJobTest, AFieldThatHasMovedByXIsReadAtXBack) {
 }
 
 TEST(SampleJobTest, TheCorrelationPeaksDownwind) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const std::vector<float> at_first = read(tile, grid(0.0, 0.0), {});
   for (int wind = 0; wind < 8; ++wind) {
     const auto downwind = [](int eighth) {
@@ -204,7 +204,7 @@ TEST(SampleJobTest, TheCorrelationPeaksDownwind) {
 }
 
 TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   float steepest = 0.0F;
   for (std::size_t z = 0; z < kTileSize; ++z) {
     for (std::size_t x = 0; x < kTileSize; ++x) {
@@ -239,8 +239,8 @@ TEST(SampleJobTest, NoTurnOfTheWindMovesTheFieldFasterThanTheWindItself) {
 }
 
 TEST_P(SampleJobOnEachRow, AddsItsLayersInTheirOrder) {
-  const noise::NoiseTile2 tile = wind_tile();
-  const noise::NoiseTile2 other = noise::make_noise_2d({.size = 64, .seed = 8}).value();
+  const noise::Tile2 tile = wind_tile();
+  const noise::Tile2 other = noise::make_noise_2d({.size = 64, .seed = 8}).value();
   const Places places = grid(0.0, 0.0);
   const Places elsewhere = grid(5.0, -3.0);
   const std::vector<NoiseLayer> layers = {
@@ -257,7 +257,7 @@ TEST_P(SampleJobOnEachRow, AddsItsLayersInTheirOrder) {
 }
 
 TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
-  const noise::NoiseTile2 tile = wind_tile();
+  const noise::Tile2 tile = wind_tile();
   const Places places = grid(0.0, 0.0);
   std::vector<float> out(places.x.size(), -7.0F);
   const NoiseLayer good_layer{.tile = &tile, .place_x = places.x, .place_z = places.z};
@@ -275,7 +275,7 @@ TEST(SampleJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   job.layers = {&layer, 1};
   layer.tile = nullptr;
   EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
-  const noise::NoiseTile2 odd{3, std::vector<float>(9)};
+  const noise::Tile2 odd{3, std::vector<float>(9)};
   layer.tile = &odd;
   EXPECT_EQ(job.run(), SampleJob::Problem::kTileNotReadable);
   layer = good_layer;

@@ -126,7 +126,7 @@ TEST_P(VectorSampleJobOnEachRow, ALayerIsStrongerWhereThoseBeforeItFallAhead) {
         return static_cast<std::uint32_t>(static_cast<std::int64_t>(samples * static_cast<double>(ahead) * 0x1p26));
       };
       const noise::TorusPhase at{places.x[i] + step(kAheadX), places.z[i] + step(kAheadZ)};
-      const auto mixed = [&](const noise::NoiseTile2& tile, const noise::NoiseTile2& quarter) {
+      const auto mixed = [&](const noise::Tile2& tile, const noise::Tile2& quarter) {
         return kCosine * noise::read_noise(tile, at) + kSine * noise::read_noise(quarter, at);
       };
       return kAheadX * mixed(slow.first.x, slow.quarter.x) + kAheadZ * mixed(slow.first.z, slow.quarter.z);

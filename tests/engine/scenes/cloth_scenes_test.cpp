@@ -14,22 +14,22 @@
 
 namespace yuragi::scenes {
 
-extern const SceneDescription kBannerScene;
-extern const SceneDescription kCurtainScene;
-extern const SceneDescription kFlagScene;
+extern const Description kBannerScene;
+extern const Description kCurtainScene;
+extern const Description kFlagScene;
 
 namespace {
 
 constexpr double kClothTick_s = 1.0 / 60.0;
 
-std::unique_ptr<Scene> cloth(const SceneDescription& kind, const ParameterValues::Map& given = {},
-                             const ScenePlacement& placement = {}) {
+std::unique_ptr<Scene> cloth(const Description& kind, const ParameterValues::Map& given = {},
+                             const Placement& placement = {}) {
   return kind.make(ParameterValues::resolve(kind.parameters, given).value(), {.seed = 1, .placement = placement});
 }
 
 /// The same, with a banner whose arm does not turn.
-std::unique_ptr<Scene> held_cloth(const SceneDescription& kind, ParameterValues::Map given = {},
-                                  const ScenePlacement& placement = {}) {
+std::unique_ptr<Scene> held_cloth(const Description& kind, ParameterValues::Map given = {},
+                                  const Placement& placement = {}) {
   if (&kind == &kBannerScene) given["turns"] = false;
   return cloth(kind, given, placement);
 }
@@ -41,11 +41,11 @@ const pose::GridPose& offsets_of(const Scene& scene) {
   return std::get<pose::GridPose>(scene.pose());
 }
 
-wind::WindVector cloth_wind(double azimuth_deg, double speed_m_s) {
+wind::Vector cloth_wind(double azimuth_deg, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_deg * kRadPerDeg), speed_m_s * std::cos(azimuth_deg * kRadPerDeg)};
 }
 
-void blow_on(Scene& scene, wind::WindVector wind, int ticks) {
+void blow_on(Scene& scene, wind::Vector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kClothTick_s);
 }
 
@@ -75,7 +75,7 @@ Place place_at(const Scene& scene, std::size_t column, std::size_t row) {
 }
 
 /// The free edge's offset, averaged over its columns and over some ticks.
-Place mean_free_edge(Scene& scene, wind::WindVector wind, int ticks) {
+Place mean_free_edge(Scene& scene, wind::Vector wind, int ticks) {
   Place mean;
   const pose::GridSkeleton& grid = grid_of(scene);
   const double share = 1.0 / static_cast<double>(grid.columns) / ticks;
@@ -114,7 +114,7 @@ int lag_ticks(const std::vector<double>& earlier, const std::vector<double>& lat
   return best;
 }
 
-class ClothScene : public testing::TestWithParam<const SceneDescription*> {};
+class ClothScene : public testing::TestWithParam<const Description*> {};
 INSTANTIATE_TEST_SUITE_P(Cloths, ClothScene, testing::Values(&kCurtainScene, &kFlagScene, &kBannerScene),
                          [](const auto& scene) { return std::string(scene.param->name); });
 
@@ -122,7 +122,7 @@ TEST_P(ClothScene, CalmIsExactlyTheRestPoseAndComesBackAfterAStorm) {
   const auto scene = held_cloth(*GetParam());
   const auto is_at_rest = [&] {
     bool same = true;
-    const pose::PoseArrays<const float> now(scene->pose());
+    const pose::Arrays<const float> now(scene->pose());
     for (const auto array : now) {
       same = same && std::all_of(array.begin(), array.end(), [](float offset_m) { return offset_m == 0.0F; });
     }
@@ -204,7 +204,7 @@ TEST_P(ClothScene, ATurnedWindTurnsTheResponse) {
 }
 
 TEST(ClothSceneTest, WavesRunAlongFlagAndBannerAtTheirPartOfTheWind) {
-  for (const SceneDescription* kind : {&kFlagScene, &kBannerScene}) {
+  for (const Description* kind : {&kFlagScene, &kBannerScene}) {
     const auto scene = held_cloth(*kind, {{"wave_speed", 0.5}});
     const pose::GridSkeleton& grid = grid_of(*scene);
     const std::size_t column = grid.columns - 1;
@@ -212,7 +212,7 @@ TEST(ClothSceneTest, WavesRunAlongFlagAndBannerAtTheirPartOfTheWind) {
     const std::size_t late = grid.rows - 10;
     const double way_m = (rest_at(*scene, column, late) - rest_at(*scene, column, early)).length();
     for (const double speed_m_s : {3.0, 6.0, 12.0}) {
-      const wind::WindVector wind = cloth_wind(90.0, speed_m_s);  // along the banner, so that it has no belly
+      const wind::Vector wind = cloth_wind(90.0, speed_m_s);  // along the banner, so that it has no belly
       blow_on(*scene, wind, 300);
       std::vector<double> early_m, late_m;
       for (int tick = 0; tick < 3000; ++tick) {
@@ -288,7 +288,7 @@ TEST_P(ClothScene, EveryRowComputesTheSameBitsNoiseAndHybrid) {
 }
 
 TEST(ClothSceneTest, CurtainAndFlagHaveThePapers30000Joints) {
-  for (const SceneDescription* kind : {&kCurtainScene, &kFlagScene}) {
+  for (const Description* kind : {&kCurtainScene, &kFlagScene}) {
     EXPECT_EQ(pose::node_count(cloth(*kind)->skeleton()), 30'000U);
   }
 }
@@ -350,7 +350,7 @@ TEST(FlagTest, TheFlysCornersCurl) {
 
 /// The root of the mean square of a number's distance from its mean, over so many ticks of a steady wind.
 template <typename Number>
-double deviation_in(Scene& scene, wind::WindVector wind, int ticks, Number number) {
+double deviation_in(Scene& scene, wind::Vector wind, int ticks, Number number) {
   double sum = 0.0, square = 0.0;
   for (int tick = 0; tick < ticks; ++tick) {
     scene.tick(wind, kClothTick_s);
@@ -364,7 +364,7 @@ double deviation_in(Scene& scene, wind::WindVector wind, int ticks, Number numbe
 TEST(BannerTest, ItsLowerEndSwingsInABreeze) {
   const auto scene = cloth(kBannerScene);
   const pose::GridSkeleton& grid = grid_of(*scene);
-  const wind::WindVector wind = cloth_wind(90.0, 4.0);  // along its arm
+  const wind::Vector wind = cloth_wind(90.0, 4.0);  // along its arm
   blow_on(*scene, wind, 300);
   EXPECT_GT(deviation_in(*scene, wind, 1800, [&] { return offset_at(*scene, grid.columns - 1, grid.rows - 1).z; }),
             0.09);
@@ -377,7 +377,7 @@ TEST(CurtainTest, AWindAlongTheCurtainRunsAlongIt) {
   const double way_m = (rest_at(*scene, 150, 0) - rest_at(*scene, 100, 0)).x;
   for (const double speed_m_s : {3.0, 6.0}) {
     for (const double azimuth_deg : {90.0, 270.0}) {  // toward east, and back
-      const wind::WindVector wind = cloth_wind(azimuth_deg, speed_m_s);
+      const wind::Vector wind = cloth_wind(azimuth_deg, speed_m_s);
       blow_on(*scene, wind, 400);
       std::vector<double> west_m, east_m;
       for (int tick = 0; tick < 3000; ++tick) {
@@ -423,7 +423,7 @@ TEST(CurtainTest, SwingsOnAsAHangingChainDoes) {
   std::vector<int> crossings;
   double before_m = hem_m(*scene);
   for (int tick = 0; tick < 360; ++tick) {
-    scene->tick(wind::WindVector{}, kClothTick_s);
+    scene->tick(wind::Vector{}, kClothTick_s);
     if (hem_m(*scene) * before_m < 0.0) crossings.push_back(tick);
     before_m = hem_m(*scene);
   }

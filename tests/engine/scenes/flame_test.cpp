@@ -16,14 +16,14 @@
 
 namespace yuragi::scenes {
 
-extern const SceneDescription kFlameScene;
+extern const Description kFlameScene;
 
 namespace {
 
 constexpr double kFlameTick_s = 1.0 / 60.0;
 
 std::unique_ptr<Scene> flame(const std::string& form, ParameterValues::Map given = {},
-                             const SceneSetup& setup = {.seed = 1}) {
+                             const Setup& setup = {.seed = 1}) {
   given["form"] = form;
   given.try_emplace("columns", std::int64_t{48});
   given.try_emplace("rows", std::int64_t{40});
@@ -37,7 +37,7 @@ const pose::SurfacePose& flame_pose_of(const Scene& scene) {
   return std::get<pose::SurfacePose>(scene.pose());
 }
 
-void run_flame(Scene& scene, wind::WindVector wind, int ticks) {
+void run_flame(Scene& scene, wind::Vector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kFlameTick_s);
 }
 
@@ -64,7 +64,7 @@ Heat heat_of(const Scene& scene) {
 }
 
 /// The mean of it over twenty seconds of a wind.
-Heat mean_heat(Scene& scene, wind::WindVector wind) {
+Heat mean_heat(Scene& scene, wind::Vector wind) {
   run_flame(scene, wind, 180);
   Heat mean{};
   for (int i = 0; i < 80; ++i) {
@@ -172,7 +172,7 @@ TEST_P(FlameForms, StandsUprightInCalmAirAndLeansFurtherTheMoreItBlows) {
 
 TEST_P(FlameForms, BreathesTwiceASecondAndTheLessTheMoreItBlows) {
   // The whole heat by 1.5 / sqrt(0.5 m) = 2.12 Hz, against frequencies beside it; 40 s, by Hann's window.
-  const auto breath = [](const std::string& form, double puffing, wind::WindVector wind, double hz) {
+  const auto breath = [](const std::string& form, double puffing, wind::Vector wind, double hz) {
     const auto scene = flame(form, {{"puffing", puffing}});
     run_flame(*scene, wind, 300);
     double cosine = 0.0;
@@ -188,7 +188,7 @@ TEST_P(FlameForms, BreathesTwiceASecondAndTheLessTheMoreItBlows) {
     }
     return std::hypot(cosine, sine) / total;
   };
-  const auto strongest = [&](double puffing, wind::WindVector wind, double from_hz) {
+  const auto strongest = [&](double puffing, wind::Vector wind, double from_hz) {
     double most = 0.0;
     for (int i = 0; i < 16; ++i) most = std::max(most, breath(GetParam(), puffing, wind, from_hz + 0.025 * i));
     return most;
@@ -276,8 +276,8 @@ TEST(FlameTest, APanelDoesNotMoveAndFeelsOnlyTheWindAlongIt) {
   const auto calm = flame("texture");
   for (int tick = 0; tick < 200; ++tick) {
     scene->tick(scripted_wind(static_cast<std::uint64_t>(tick)), kFlameTick_s);
-    across->tick(wind::WindVector{0.0, 20.0}, kFlameTick_s);
-    calm->tick(wind::WindVector{}, kFlameTick_s);
+    across->tick(wind::Vector{0.0, 20.0}, kFlameTick_s);
+    calm->tick(wind::Vector{}, kFlameTick_s);
     for (const float moved_m : flame_pose_of(*scene).displacement_m) ASSERT_EQ(moved_m, 0.0F);
   }
   EXPECT_EQ(pose::pose_hash(0, across->pose()), pose::pose_hash(0, calm->pose()));
@@ -347,7 +347,7 @@ TEST(FlameTest, HeatGoesOnWithoutAJumpWhateverTheWindDoes) {
     float largest = 0.0F;
     std::vector<float> before = flame_pose_of(*scene).heat;
     for (int tick = 0; tick < 4 * ticks_per_s; ++tick) {
-      scene->tick(wind::WindVector{tick * 4 / ticks_per_s % 2 == 0 ? 40.0 : -40.0, 5.0}, 1.0 / ticks_per_s);
+      scene->tick(wind::Vector{tick * 4 / ticks_per_s % 2 == 0 ? 40.0 : -40.0, 5.0}, 1.0 / ticks_per_s);
       const std::vector<float>& now = flame_pose_of(*scene).heat;
       for (std::size_t i = 0; i < now.size(); ++i) largest = std::max(largest, std::abs(now[i] - before[i]));
       before = now;

@@ -10,7 +10,7 @@
 
 namespace yuragi::scenes {
 
-extern const SceneDescription kFurScene;
+extern const Description kFurScene;
 
 namespace {
 
@@ -71,7 +71,7 @@ TEST(FurTest, LinksKeepTheirLengthTo1e5) {
   const auto& skeleton = std::get<pose::StrandSkeleton>(scene->skeleton());
   pose::JointPositions joints(skeleton);
   for (const double speed_m_s : {0.0, 5.0, 40.0}) {
-    for (int tick = 0; tick < 30; ++tick) scene->tick(wind::WindVector{speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
+    for (int tick = 0; tick < 30; ++tick) scene->tick(wind::Vector{speed_m_s, -0.5 * speed_m_s}, 1.0 / 60.0);
     ASSERT_EQ((pose::StrandKinematicsJob{
                   .skeleton = &skeleton, .pose = &std::get<pose::StrandPose>(scene->pose()), .joints = &joints}
                    .run()),
@@ -93,7 +93,7 @@ TEST(FurTest, LinksKeepTheirLengthTo1e5) {
 
 TEST(FurTest, StrokesRunOverTheRidgeWithoutASeam) {
   const auto scene = fur();
-  for (int tick = 0; tick < 600; ++tick) scene->tick(wind::WindVector{0.0, -8.0}, 1.0 / 60.0);
+  for (int tick = 0; tick < 600; ++tick) scene->tick(wind::Vector{0.0, -8.0}, 1.0 / 60.0);
   const auto& pose = std::get<pose::StrandPose>(scene->pose());
   double largest_rad = 0.0;
   // Two hairs in the middle of a row stand to either side of the ridge.
@@ -109,7 +109,7 @@ TEST(FurTest, StrokesRunOverTheRidgeWithoutASeam) {
 TEST(FurTest, PartingsOpenInTheWind) {
   const auto spread_deg = [](double speed_m_s) {
     const auto scene = fur();
-    for (int tick = 0; tick < 600; ++tick) scene->tick(wind::WindVector{0.0, -speed_m_s}, 1.0 / 60.0);
+    for (int tick = 0; tick < 600; ++tick) scene->tick(wind::Vector{0.0, -speed_m_s}, 1.0 / 60.0);
     const auto& pose = std::get<pose::StrandPose>(scene->pose());
     double sum = 0.0;
     double squares = 0.0;
@@ -135,7 +135,7 @@ TEST(FurTest, IsStrokedMoreByMoreWindUntilItLiesFlat) {
     const auto scene = fur({{"hairs_along", std::int64_t{40}}, {"hairs_around", std::int64_t{32}}});
     double mean_rad = 0.0;
     for (int tick = 0; tick < 900; ++tick) {
-      scene->tick(wind::WindVector{speed_m_s, 0.0}, 1.0 / 60.0);
+      scene->tick(wind::Vector{speed_m_s, 0.0}, 1.0 / 60.0);
       const auto& pose = std::get<pose::StrandPose>(scene->pose());
       if (tick >= 300) {
         for (std::size_t i = 0; i < 1280; ++i)

@@ -52,11 +52,11 @@ class StationWind {
  public:
   explicit StationWind(SimdRow row) : estimator_(1, settings(), golden_gusts()), tapes_(1, row) {}
 
-  wind::ground::GroundWind at(std::uint64_t tick) {
+  wind::ground::Wind at(std::uint64_t tick) {
     const MonoTime now(from_seconds(static_cast<double>(tick) * kGoldenTick_s));
     if (tick % 60 == 0) {
-      const wind::WindVector wind = scripted_wind(tick);
-      wind::WindReading reading;
+      const wind::Vector wind = scripted_wind(tick);
+      wind::Reading reading;
       reading.speed_m_s = wind::speed_of(wind);
       reading.direction_deg = wind::direction_from_deg(wind);
       reading.time.mono = now;
@@ -71,8 +71,8 @@ class StationWind {
   }
 
  private:
-  static wind::blend::BlendSettings settings() {
-    wind::blend::BlendSettings settings;
+  static wind::blend::Settings settings() {
+    wind::blend::Settings settings;
     settings.gustiness = 0.3;
     settings.reach_m = 10.0;
     return settings;
@@ -89,7 +89,7 @@ std::string golden_hash(std::string_view scene) {
   return hash;
 }
 
-ParameterValues defaults_of(const SceneDescription& scene) {
+ParameterValues defaults_of(const Description& scene) {
   return ParameterValues::resolve(scene.parameters, {}).value();
 }
 
@@ -97,14 +97,14 @@ class GoldenOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(GoldenOnEachRow);
 
 TEST_P(GoldenOnEachRow, EverySceneMovesAsItDidWhenItsHashWasWritten) {
-  for (const SceneDescription* scene : scene_table()) {
+  for (const Description* scene : scene_table()) {
     const auto made = scene->make(defaults_of(*scene), {.seed = 1, .row = GetParam()});
     EXPECT_EQ(hash_of(*made, GetParam(), 600, scripted_wind), golden_hash(scene->name)) << scene->name;
   }
 }
 
 TEST_P(GoldenOnEachRow, EverySceneMovesInAMeasuredWindAsItDidWhenItsHashWasWritten) {
-  for (const SceneDescription* scene : scene_table()) {
+  for (const Description* scene : scene_table()) {
     const auto made = scene->make(defaults_of(*scene), {.seed = 1, .row = GetParam(), .gusts = golden_gusts()});
     StationWind wind(GetParam());
     EXPECT_EQ(hash_of(*made, GetParam(), 300, [&](std::uint64_t tick) { return wind.at(tick); }),

@@ -14,7 +14,7 @@
 
 namespace yuragi::scenes {
 
-extern const SceneDescription kGrassScene;
+extern const Description kGrassScene;
 
 namespace {
 
@@ -48,11 +48,11 @@ double lean_azimuth_rad(const pose::StrandPose& pose, std::size_t i) {
 }
 
 /// The wind that blows toward an azimuth.
-wind::WindVector toward(double azimuth_rad, double speed_m_s) {
+wind::Vector toward(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void run(Scene& scene, wind::WindVector wind, int ticks) {
+void run(Scene& scene, wind::Vector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kTick_s);
 }
 

@@ -40,7 +40,7 @@ TEST(GustNodes, HasTheGustsOfEachNode) {
     double squares = 0.0;
     double scatter = 0.0;
     for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
-      const wind::WindVector there = shared_gusts()->local(gusts, nodes.x_m()[i], nodes.z_m()[i]);
+      const wind::Vector there = shared_gusts()->local(gusts, nodes.x_m()[i], nodes.z_m()[i]);
       squares += std::pow(static_cast<double>(nodes.along_m_s()[i]) - there.v_m_s, 2) +
                  std::pow(static_cast<double>(nodes.across_m_s()[i]) + there.u_m_s, 2);
       scatter += there.u_m_s * there.u_m_s + there.v_m_s * there.v_m_s;

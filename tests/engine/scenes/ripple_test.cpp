@@ -17,14 +17,14 @@
 
 namespace yuragi::scenes {
 
-extern const SceneDescription kRippleScene;
+extern const Description kRippleScene;
 
 namespace {
 
 constexpr double kRippleTick_s = 1.0 / 60.0;
 
 /// Water of 64 x 64 points, 6.3 m wide: a point each 0.1 m.
-std::unique_ptr<Scene> ripple(ParameterValues::Map given = {}, const SceneSetup& setup = {.seed = 1}) {
+std::unique_ptr<Scene> ripple(ParameterValues::Map given = {}, const Setup& setup = {.seed = 1}) {
   given.try_emplace("columns", std::int64_t{64});
   given.try_emplace("rows", std::int64_t{64});
   given.try_emplace("width", 6.3);
@@ -42,11 +42,11 @@ double rms(const std::vector<float>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-wind::WindVector over_water(double azimuth_rad, double speed_m_s) {
+wind::Vector over_water(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void run_ripple(Scene& scene, wind::WindVector wind, int ticks) {
+void run_ripple(Scene& scene, wind::Vector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kRippleTick_s);
 }
 

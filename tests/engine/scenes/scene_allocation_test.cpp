@@ -51,7 +51,7 @@ namespace yuragi::scenes {
 namespace {
 
 TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
-  for (const SceneDescription* description : scene_table()) {
+  for (const Description* description : scene_table()) {
     const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(),
                                          {.seed = 1, .gusts = shared_gusts()});
     GustyWind wind({5.0, 2.0}, 0.4F);
@@ -72,17 +72,17 @@ TEST(SceneAllocationTest, NoSceneAllocatesInATickNorDoForwardKinematics) {
 
 TEST(SceneAllocationTest, NoSceneAllocatesInATickUnderAWindThatIsMeasuredAtOneOrSeveralPlaces) {
   for (const std::size_t pens : {1U, 3U}) {
-    StrokeRun run(std::vector<wind::WindVector>(pens, wind::WindVector{0.0, 20.0}));
+    StrokeRun run(std::vector<wind::Vector>(pens, wind::Vector{0.0, 20.0}));
     wind::ground::WindTapes tapes;
     const StrokeRun::Set measure = steady_gusts(0.3, 0.7);
-    for (const SceneDescription* description : scene_table()) {
+    for (const Description* description : scene_table()) {
       const auto scene = description->make(ParameterValues::resolve(description->parameters, {}).value(),
                                            {.seed = 1, .gusts = shared_gusts()});
       GustyWind wind({0.0, 7.0}, 0.4F);
       const std::size_t before = allocations;
       for (std::uint64_t tick = 0; tick < 20; ++tick) {
         run.step(measure);
-        const wind::ground::GroundWind ground =
+        const wind::ground::Wind ground =
             written_to(tapes, {.state = {}, .ground = wind.step(1.0 / 60.0), .stroke = run.stroke()});
         scene->tick(ground, 1.0 / 60.0);
       }

@@ -21,16 +21,16 @@ namespace {
 
 constexpr double kContractTick_s = 1.0 / 60.0;
 
-std::unique_ptr<Scene> make(const SceneDescription& kind, const SceneSetup& setup = {.seed = 1}) {
+std::unique_ptr<Scene> make(const Description& kind, const Setup& setup = {.seed = 1}) {
   return kind.make(ParameterValues::resolve(kind.parameters, {}).value(), setup);
 }
 
 /// A wind that no sensor and no estimator should give, and any may.
-wind::WindVector nasty_wind(std::uint64_t tick) {
+wind::Vector nasty_wind(std::uint64_t tick) {
   const math::RandomStream random(3, math::stream_id("nasty wind"));
   const auto toward = [](double speed_m_s, double azimuth_deg) {
     const double azimuth_rad = azimuth_deg * std::numbers::pi / 180.0;
-    return wind::WindVector{speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
+    return wind::Vector{speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
   };
   switch (tick / 60) {
     case 0:  // out of nothing
@@ -52,9 +52,9 @@ wind::WindVector nasty_wind(std::uint64_t tick) {
 constexpr std::uint64_t kNastyTicks = 420;
 
 /// The same with gusts as nasty.
-wind::ground::GroundWind nasty_gusts(std::uint64_t tick) {
+wind::ground::Wind nasty_gusts(std::uint64_t tick) {
   const math::RandomStream random(3, math::stream_id("nasty gusts"));
-  wind::ground::GroundWind wind(nasty_wind(tick));
+  wind::ground::Wind wind(nasty_wind(tick));
   for (std::size_t i = 0; i < wind::turbulence::GustNoise::kOctaves; ++i) {
     wind.gusts.along_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + i));
     wind.gusts.across_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + 32 + i));
@@ -86,7 +86,7 @@ double largest_step_m(const std::vector<pose::JointPosition>& from, const std::v
   return std::sqrt(largest_square);
 }
 
-class SceneContract : public testing::TestWithParam<const SceneDescription*> {};
+class SceneContract : public testing::TestWithParam<const Description*> {};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SceneContract, testing::ValuesIn(scene_table().begin(), scene_table().end()),
                          [](const auto& scene) { return std::string(scene.param->name); });
@@ -103,13 +103,13 @@ TEST_P(SceneContract, ItsPoseFitsItsSkeletonAndBeginsAtRest) {
   const auto scene = make(*GetParam());
   EXPECT_GT(pose::node_count(scene->skeleton()), 0U);
   EXPECT_TRUE(pose::fits(scene->pose(), scene->skeleton()));
-  scene->tick(wind::WindVector{3.0, 1.0}, kContractTick_s);
+  scene->tick(wind::Vector{3.0, 1.0}, kContractTick_s);
   EXPECT_TRUE(pose::fits(scene->pose(), scene->skeleton()));
 }
 
 TEST_P(SceneContract, CalmIsTheRestPoseUnlessItSaysThatItMovesInCalmAirToo) {
   const auto scene = make(*GetParam());
-  for (int tick = 0; tick < 120; ++tick) scene->tick(wind::WindVector{}, kContractTick_s);
+  for (int tick = 0; tick < 120; ++tick) scene->tick(wind::Vector{}, kContractTick_s);
   const pose::Pose rest = pose::rest_pose(scene->skeleton());
   pose::Kinematics at_rest(scene->skeleton());
   pose::Kinematics in_calm(scene->skeleton());
@@ -131,7 +131,7 @@ TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
     std::vector<pose::JointPosition> before = all_joints(kinematics, count);
     double largest_m = 0.0;
     for (std::uint64_t tick = 0; tick < kNastyTicks; ++tick) {
-      scene->tick(has_gusts ? nasty_gusts(tick) : wind::ground::GroundWind(nasty_wind(tick)), dt_s);
+      scene->tick(has_gusts ? nasty_gusts(tick) : wind::ground::Wind(nasty_wind(tick)), dt_s);
       ASSERT_TRUE(kinematics.run(scene->pose()));
       std::vector<pose::JointPosition> now = all_joints(kinematics, count);
       const double step_m = largest_step_m(before, now);
@@ -147,7 +147,7 @@ TEST_P(SceneContract, NoWindMovesAJointFartherInATickThanItsBound) {
 
 TEST_P(SceneContract, CalmWithGustsThatHaveNoStrengthIsTheRestPose) {
   const auto scene = make(*GetParam(), {.seed = 1, .gusts = shared_gusts()});
-  for (int tick = 0; tick < 60; ++tick) scene->tick(wind::WindVector{}, kContractTick_s);
+  for (int tick = 0; tick < 60; ++tick) scene->tick(wind::Vector{}, kContractTick_s);
   const pose::Pose rest = pose::rest_pose(scene->skeleton());
   pose::Kinematics at_rest(scene->skeleton());
   pose::Kinematics in_calm(scene->skeleton());

@@ -24,8 +24,8 @@ constexpr double kTapeTick_s = MeasuredWind::kTick_s;
 constexpr GroundNodes kTapeField{
     .west_m = -20.0, .north_m = -3.0, .cell_x_m = 0.5, .cell_z_m = 0.5, .columns = 121, .lines = 15};
 
-std::vector<wind::blend::BlendSourceSettings> sensors_at(std::size_t count) {
-  std::vector<wind::blend::BlendSourceSettings> sensors(count);
+std::vector<wind::blend::SourceSettings> sensors_at(std::size_t count) {
+  std::vector<wind::blend::SourceSettings> sensors(count);
   for (std::size_t i = 0; i < count; ++i) {
     sensors[i].priority = 1;
     sensors[i].has_place = true;
@@ -50,7 +50,7 @@ wind::ground::DrivingWind fill(wind::ground::WindTapes& tapes, std::size_t senso
 TEST(TapeNodes, HasTheMeasuredWindAndWhatIsLeftOfTheNoiseAtEachNode) {
   for (const std::size_t sensors : {1U, 2U}) {
     wind::ground::WindTapes tapes(sensors);
-    const wind::ground::GroundWind wind = fill(tapes, sensors).ground;
+    const wind::ground::Wind wind = fill(tapes, sensors).ground;
     const GustNodes nodes(shared_gusts(), kTapeField, best_simd_row());
     TapeNodes at_nodes(nodes);
     at_nodes.read(wind, nodes, nodes.all_lines(), {});
@@ -68,7 +68,7 @@ TEST(TapeNodes, HasTheMeasuredWindAndWhatIsLeftOfTheNoiseAtEachNode) {
     double scatter_m_s = 0.0;
     for (std::size_t i = 0; i < nodes.x_m().size(); ++i) {
       const wind::ground::WindTapes::Reading there = tapes.at(nodes.x_m()[i], nodes.z_m()[i]);
-      const wind::WindVector measured = wind.measured_at(nodes.x_m()[i], nodes.z_m()[i]);
+      const wind::Vector measured = wind.measured_at(nodes.x_m()[i], nodes.z_m()[i]);
       ASSERT_EQ(at_nodes.known(i).u_m_s, measured.u_m_s) << i;
       ASSERT_EQ(at_nodes.known(i).v_m_s, measured.v_m_s) << i;
       ASSERT_EQ(at_nodes.gain(i), there.gain);

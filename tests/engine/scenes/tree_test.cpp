@@ -20,13 +20,13 @@
 
 namespace yuragi::scenes {
 
-extern const SceneDescription kTreeScene;
+extern const Description kTreeScene;
 
 namespace {
 
 constexpr double kTreeTick_s = 1.0 / 60.0;
 
-std::unique_ptr<Scene> tree_scene(const ParameterValues::Map& given = {}, const SceneSetup& setup = {.seed = 1}) {
+std::unique_ptr<Scene> tree_scene(const ParameterValues::Map& given = {}, const Setup& setup = {.seed = 1}) {
   return kTreeScene.make(ParameterValues::resolve(kTreeScene.parameters, given).value(), setup);
 }
 
@@ -67,15 +67,15 @@ pose::TreeJoints tree_joints(const Scene& scene) {
   return joints;
 }
 
-wind::WindVector blowing_toward(double azimuth_rad, double speed_m_s) {
+wind::Vector blowing_toward(double azimuth_rad, double speed_m_s) {
   return {speed_m_s * std::sin(azimuth_rad), speed_m_s * std::cos(azimuth_rad)};
 }
 
-void blow_on_tree(Scene& scene, wind::WindVector wind, int ticks) {
+void blow_on_tree(Scene& scene, wind::Vector wind, int ticks) {
   for (int i = 0; i < ticks; ++i) scene.tick(wind, kTreeTick_s);
 }
 
-double crossings_per_s(Scene& scene, std::size_t part, wind::WindVector wind);
+double crossings_per_s(Scene& scene, std::size_t part, wind::Vector wind);
 
 /// Mean and variance of a number as it comes.
 struct Moments {
@@ -195,7 +195,7 @@ TEST(TreeTest, LimbsSwayEachAtItsOwnPaceAfterAGust) {
   blow_on_tree(*scene, blowing_toward(0.0, 12.0), 900);
   std::array<std::vector<double>, 8> course;
   for (int tick = 0; tick < 420; ++tick) {
-    scene->tick(wind::WindVector{}, kTreeTick_s);
+    scene->tick(wind::Vector{}, kTreeTick_s);
     for (std::size_t s = 0; s < course.size() && tick > 30; ++s) {
       course[s].push_back(static_cast<double>(bends_of(*scene, kLimbs).bend_south_rad[s]));
     }
@@ -352,7 +352,7 @@ TEST(TreeTest, LinksKeepTheirLengthTo1e5AndTheFootStandsStill) {
 
 /// How far each strand of a part is moved to and fro on average, after a while of a steady wind: the standard
 /// deviation.
-double liveliness_rad(Scene& scene, std::size_t part, wind::WindVector wind, int ticks) {
+double liveliness_rad(Scene& scene, std::size_t part, wind::Vector wind, int ticks) {
   const std::size_t count = tree_of(scene).levels[part].strands.strand_count;
   std::vector<Moments> east(count);
   std::vector<Moments> south(count);
@@ -375,7 +375,7 @@ TEST(TreeTest, PoplarLeavesFlutterInTheFaintestAirAndTwiceAsMuchAsCherryLeavesIn
   for (const auto& [speed_m_s, times] : {std::pair{1.0, 6.0}, std::pair{3.0, 4.0}, std::pair{20.0, 1.8}}) {
     const auto cherry = tree_scene(little("cherry"));
     const auto poplar = tree_scene(little("poplar"));
-    const wind::WindVector wind = blowing_toward(0.5, speed_m_s);
+    const wind::Vector wind = blowing_toward(0.5, speed_m_s);
     EXPECT_GT(liveliness_rad(*poplar, kLeaves, wind, 600), times * liveliness_rad(*cherry, kLeaves, wind, 600));
   }
 }
@@ -393,7 +393,7 @@ TEST(TreeTest, TheThinnerTheWoodTheMoreItSways) {
 }
 
 /// How often a second the east bends of a part pass through their mean.
-double crossings_per_s(Scene& scene, std::size_t part, wind::WindVector wind) {
+double crossings_per_s(Scene& scene, std::size_t part, wind::Vector wind) {
   constexpr int kTicks = 1800;
   const std::size_t count = std::min<std::size_t>(tree_of(scene).levels[part].strands.strand_count, 64);
   std::vector<std::vector<double>> course(count);
@@ -416,7 +416,7 @@ double crossings_per_s(Scene& scene, std::size_t part, wind::WindVector wind) {
 }
 
 TEST(TreeTest, LeavesFlutterFasterThanBranchesSwayAndLimbsFasterThanTheTrunk) {
-  const wind::WindVector wind = blowing_toward(1.2, 8.0);
+  const wind::Vector wind = blowing_toward(1.2, 8.0);
   const double leaves = crossings_per_s(*tree_scene(little()), kLeaves, wind);
   const double twigs = crossings_per_s(*tree_scene(little()), kTwigs, wind);
   const double trunk = crossings_per_s(*tree_scene(little()), kTrunk, wind);
@@ -427,7 +427,7 @@ TEST(TreeTest, LeavesFlutterFasterThanBranchesSwayAndLimbsFasterThanTheTrunk) {
 TEST(TreeTest, NeighbouringLeavesMoveMoreAlikeThanDistantOnes) {
   // The size of a bend shows the flutter if the lean beneath it is slight.
   const auto scene = tree_scene(little("poplar", {{"leaf_lean", 40.0}}));
-  const wind::WindVector wind = blowing_toward(0.3, 6.0);
+  const wind::Vector wind = blowing_toward(0.3, 6.0);
   blow_on_tree(*scene, wind, 120);
   std::vector<Moments> east(1600);
   std::vector<std::vector<double>> course(1600);

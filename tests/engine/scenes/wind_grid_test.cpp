@@ -48,7 +48,7 @@ double held_part(std::size_t tile_octave, double cell_m) {
 }
 
 /// What nodes so far apart hold of a wind.
-wind::ground::GroundWind held(wind::ground::GroundWind wind, double cell_m) {
+wind::ground::Wind held(wind::ground::Wind wind, double cell_m) {
   for (std::size_t i = 0; i < 2 * wind::turbulence::GustNoise::kTileOctaves; ++i) {
     const auto part = static_cast<float>(held_part(i, cell_m));
     wind.gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] *= part;
@@ -69,15 +69,15 @@ TEST(WindGrid, EachPlaceFeelsTheWindOfThatPlace) {
     Places places(side_m, 203, length);
     WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
     const GustyWind gusty({6.0, -2.0}, 0.5F);
-    wind::ground::GroundWind wind = gusty.wind();
+    wind::ground::Wind wind = gusty.wind();
     wind.gusts.gustiness = static_cast<float>(gustiness);
     for (int tick = 0; tick < 240; ++tick) grid.step(wind, kGridTick_s);
-    const wind::ground::GroundWind expected = held(wind, 0.5);
+    const wind::ground::Wind expected = held(wind, 0.5);
     grid.sample(0, places.east_m_s, places.south_m_s);
     double squares = 0.0;
     double scatter = 0.0;
     for (std::size_t i = 0; i < places.x_m.size(); ++i) {
-      const wind::WindVector there =
+      const wind::Vector there =
           expected.at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
       squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
                  std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
@@ -102,7 +102,7 @@ TEST(WindGrid, AGridOfPlacesIsReadToTheSameBitsAsEachOfThem) {
     WindGrid as_places(shared_gusts(), x_m, z_m, best_simd_row());
     GustyWind gusty({6.0, -2.0}, 0.5F);
     for (int tick = 0; tick < 30; ++tick) {
-      const wind::ground::GroundWind wind = gusty.step(kGridTick_s);
+      const wind::ground::Wind wind = gusty.step(kGridTick_s);
       as_grid.step(wind, kGridTick_s);
       as_places.step(wind, kGridTick_s);
     }
@@ -152,11 +152,11 @@ TEST(WindGrid, CalmIsCalmBitForBitAndComesAgain) {
     const auto is_zero = [](float value) { return value == 0.0F; };
     return std::ranges::all_of(places.east_m_s, is_zero) && std::ranges::all_of(places.south_m_s, is_zero);
   };
-  grid.step(wind::WindVector{}, kGridTick_s);
+  grid.step(wind::Vector{}, kGridTick_s);
   EXPECT_TRUE(is_calm());
-  for (int tick = 0; tick < 60; ++tick) grid.step(wind::WindVector{3.0, 4.0}, kGridTick_s);
+  for (int tick = 0; tick < 60; ++tick) grid.step(wind::Vector{3.0, 4.0}, kGridTick_s);
   EXPECT_FALSE(is_calm());
-  for (int tick = 0; tick < 600; ++tick) grid.step(wind::WindVector{}, kGridTick_s);
+  for (int tick = 0; tick < 600; ++tick) grid.step(wind::Vector{}, kGridTick_s);
   EXPECT_TRUE(is_calm());
 }
 
@@ -168,16 +168,16 @@ TEST_P(HostileWind, IsNeverTooStrongAndNeverTooQuick) {
   Places places(7.0);
   WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
   const math::RandomStream random(8, math::stream_id("hostile gusts"));
-  const double bound_m_s = SceneWind::largest_step_m_s(kGridTick_s);
+  const double bound_m_s = Wind::largest_step_m_s(kGridTick_s);
   std::vector<float> east_before(places.x_m.size()), south_before(places.x_m.size());
   double largest_m_s = 0.0;
   for (std::uint64_t tick = 0; tick < 300; ++tick) {
-    wind::ground::GroundWind wind(
-        wind::WindVector{200.0 * (random.uniform(4 * tick) - 0.5), 200.0 * (random.uniform(4 * tick + 1) - 0.5)});
+    wind::ground::Wind wind(
+        wind::Vector{200.0 * (random.uniform(4 * tick) - 0.5), 200.0 * (random.uniform(4 * tick + 1) - 0.5)});
     wind.gusts.along_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 2)));
     wind.gusts.across_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 3)));
     wind.gusts.carried = shared_gusts()->begin(tick);
-    wind.advection = 100.0 * wind::WindVector{random.uniform(4 * tick), random.uniform(4 * tick + 1)};
+    wind.advection = 100.0 * wind::Vector{random.uniform(4 * tick), random.uniform(4 * tick + 1)};
     if (GetParam()) wind.tick = tick + tick / 40 * (tick % 7);
     grid.step(wind, kGridTick_s);
     grid.sample(0, places.east_m_s, places.south_m_s);
@@ -203,7 +203,7 @@ struct PassingGusts {
     constexpr int kTicks = 600;
     GustyWind gusty({6.0, 3.0}, 0.5F);
     for (int tick = 0; tick < kWarmUpTicks + kTicks; ++tick) {
-      wind::ground::GroundWind wind = gusty.step(kGridTick_s);
+      wind::ground::Wind wind = gusty.step(kGridTick_s);
       if (!has_number) wind.tick.reset();
       grid.step(wind, kGridTick_s);
       grid.sample(0, places.east_m_s, places.south_m_s);
@@ -259,7 +259,7 @@ TEST(WindGrid, SkippedTicksLeaveNoLineBehind) {
   // A steady wind that turned while ticks were skipped: all nodes have it once each part has been read.
   Places places(7.0);
   WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
-  wind::ground::GroundWind wind(wind::WindVector{5.0, 0.0});
+  wind::ground::Wind wind(wind::Vector{5.0, 0.0});
   std::uint64_t tick = 0;
   const auto step = [&](std::uint64_t ticks) {
     tick += ticks;
@@ -278,7 +278,7 @@ TEST(WindGrid, SkippedTicksLeaveNoLineBehind) {
 
 /// A wind toward north of 6 m/s that has been measured for half a minute south of the places, and stands still now.
 struct MeasuredGround {
-  explicit MeasuredGround(std::vector<wind::WindVector> pens, float noise_m_s) : run(std::move(pens)) {
+  explicit MeasuredGround(std::vector<wind::Vector> pens, float noise_m_s) : run(std::move(pens)) {
     run.blow({0.0, 6.0});
     for (int tick = 0; tick < 1860; ++tick) {  // which ends in a gust
       run.tick(tapes, [tick](std::size_t pen, wind::ground::WindSample& now) {
@@ -301,11 +301,11 @@ struct MeasuredGround {
   }
   StrokeRun run;
   wind::ground::WindTapes tapes;
-  wind::ground::GroundWind ground;
+  wind::ground::Wind ground;
 };
 
 TEST(WindGrid, EachPlaceHasWhatWasMeasuredForIt) {
-  const std::vector<std::vector<wind::WindVector>> pens = {{{-17.0, 30.0}}, {{-25.0, 25.0}, {-10.0, 8.0}}};
+  const std::vector<std::vector<wind::Vector>> pens = {{{-17.0, 30.0}}, {{-25.0, 25.0}, {-10.0, 8.0}}};
   for (const auto& of_pens : pens) {
     for (const float noise_m_s : {0.0F, 0.3F}) {
       MeasuredGround measured(of_pens, noise_m_s);
@@ -313,11 +313,11 @@ TEST(WindGrid, EachPlaceHasWhatWasMeasuredForIt) {
       WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
       for (int tick = 0; tick < 240; ++tick) grid.step(measured.ground, kGridTick_s);
       grid.sample(0, places.east_m_s, places.south_m_s);
-      const wind::ground::GroundWind expected = held(measured.ground, 0.5);
+      const wind::ground::Wind expected = held(measured.ground, 0.5);
       double squares = 0.0;
       double scatter = 0.0;
       for (std::size_t i = 0; i < places.x_m.size(); ++i) {
-        const wind::WindVector there =
+        const wind::Vector there =
             expected.at(*shared_gusts(), static_cast<double>(places.x_m[i]), static_cast<double>(places.z_m[i]));
         squares += std::pow(static_cast<double>(places.east_m_s[i]) - there.u_m_s, 2) +
                    std::pow(-static_cast<double>(places.south_m_s[i]) - there.v_m_s, 2);
@@ -331,17 +331,17 @@ TEST(WindGrid, EachPlaceHasWhatWasMeasuredForIt) {
 
 TEST(SceneWind, WithoutNoiseASceneFeelsWhatWasMeasuredAndOfTheMeanAloneNothingElse) {
   MeasuredGround measured({{0.0, 30.0}}, 0.4F);
-  const ScenePlacement placement{};
-  SceneWind all(placement);
-  SceneWind mean(placement, nullptr, WindPart::kMean);
+  const Placement placement{};
+  Wind all(placement);
+  Wind mean(placement, nullptr, WindPart::kMean);
   for (int tick = 0; tick < 240; ++tick) {
     all.step(measured.ground, kGridTick_s);
     mean.step(measured.ground, kGridTick_s);
   }
-  const wind::WindVector expected = measured.ground.measured_at(0.0, 0.0);
+  const wind::Vector expected = measured.ground.measured_at(0.0, 0.0);
   EXPECT_NEAR(all.east_m_s(), expected.u_m_s, 1e-3);
   EXPECT_NEAR(-all.south_m_s(), expected.v_m_s, 1e-3);
-  EXPECT_GT(speed_of(expected - wind::WindVector{0.0, 6.0}), 0.03);
+  EXPECT_GT(speed_of(expected - wind::Vector{0.0, 6.0}), 0.03);
   EXPECT_NEAR(mean.east_m_s(), 0.0, 1e-3);
   EXPECT_NEAR(-mean.south_m_s(), 6.0, 1e-3);
 }

@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kTick_s = 0.25;
 
-WindVector from(double direction_deg, double speed_m_s = 5.0) {
+Vector from(double direction_deg, double speed_m_s = 5.0) {
   return wind_from(speed_m_s, direction_deg);
 }
 
-void blow(ViewWind& side, double duration_s, WindVector wind, bool is_live = true) {
+void blow(ViewWind& side, double duration_s, Vector wind, bool is_live = true) {
   const auto ticks = std::lrint(std::ceil(duration_s / kTick_s));
   for (long tick = 0; tick < ticks; ++tick) side.advance(kTick_s, wind, is_live);
 }
@@ -99,7 +99,7 @@ TEST(ViewWind, GivesTheSameBitsTwice) {
   ViewWind one(240.0);
   ViewWind other(240.0);
   for (int i = 0; i < 5000; ++i) {
-    const WindVector wind = from(200.0 + 80.0 * std::sin(0.01 * i), 3.0 + 2.0 * std::cos(0.1 * i));
+    const Vector wind = from(200.0 + 80.0 * std::sin(0.01 * i), 3.0 + 2.0 * std::cos(0.1 * i));
     one.advance(kTick_s, wind, i % 7 != 0);
     other.advance(kTick_s, wind, i % 7 != 0);
     ASSERT_EQ(one.from_deg(), other.from_deg());

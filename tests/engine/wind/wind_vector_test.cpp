@@ -11,20 +11,20 @@ namespace yuragi::wind {
 namespace {
 
 TEST(WindVector, AWindFromTheNorthBlowsSouth) {
-  const WindVector wind = wind_from(5.0, 0.0);
+  const Vector wind = wind_from(5.0, 0.0);
   EXPECT_NEAR(wind.u_m_s, 0.0, 1e-12);
   EXPECT_NEAR(wind.v_m_s, -5.0, 1e-12);
 }
 
 TEST(WindVector, AWindFromTheWestBlowsEast) {
-  const WindVector wind = wind_from(5.0, 270.0);
+  const Vector wind = wind_from(5.0, 270.0);
   EXPECT_NEAR(wind.u_m_s, 5.0, 1e-12);
   EXPECT_NEAR(wind.v_m_s, 0.0, 1e-12);
 }
 
 TEST(WindVector, DirectionAndSpeedComeBack) {
   for (int direction_deg = 0; direction_deg < 360; ++direction_deg) {
-    const WindVector wind = wind_from(7.0, direction_deg);
+    const Vector wind = wind_from(7.0, direction_deg);
     EXPECT_NEAR(speed_of(wind), 7.0, 1e-12);
     EXPECT_NEAR(std::remainder(direction_from_deg(wind) - direction_deg, 360.0), 0.0, 1e-9);
     EXPECT_GE(direction_from_deg(wind), 0.0);
@@ -33,13 +33,13 @@ TEST(WindVector, DirectionAndSpeedComeBack) {
 }
 
 TEST(WindVector, TheMiddleOf350And10DegreesIsNorthNotSouth) {
-  const WindVector middle = 0.5 * (wind_from(4.0, 350.0) + wind_from(4.0, 10.0));
+  const Vector middle = 0.5 * (wind_from(4.0, 350.0) + wind_from(4.0, 10.0));
   EXPECT_NEAR(std::remainder(direction_from_deg(middle), 360.0), 0.0, 1e-9);
 }
 
 TEST(WindReading, WhatNoWindCanBeIsNotPlausible) {
   const auto reading = [](double speed_m_s) {
-    WindReading made;
+    Reading made;
     made.speed_m_s = speed_m_s;
     return made;
   };
@@ -50,7 +50,7 @@ TEST(WindReading, WhatNoWindCanBeIsNotPlausible) {
   EXPECT_FALSE(is_plausible(reading(std::numeric_limits<double>::quiet_NaN())));
   EXPECT_FALSE(is_plausible(reading(std::numeric_limits<double>::infinity())));
 
-  WindReading odd = reading(3.0);
+  Reading odd = reading(3.0);
   odd.direction_deg = 360.0;
   EXPECT_FALSE(is_plausible(odd));
   odd.direction_deg = 359.9;

@@ -93,21 +93,21 @@ TEST(HostileBytes, TheFileIdentifierIsAskedFor) {
   Bytes hello = encode(samples::hello());
   ASSERT_EQ(std::string(hello.begin() + 8, hello.begin() + 12), "YURA");
   hello[8] = 'Z';
-  EXPECT_EQ(decode(samples::body(hello)).error(), WireError::kNotVerified);
+  EXPECT_EQ(decode(samples::body(hello)).error(), Error::kNotVerified);
 }
 
 TEST(HostileBytes, ASizePrefixOutOfBoundsIsRefused) {
   const auto read = [](std::array<std::uint8_t, 4> prefix) { return read_size_prefix(prefix, 4096); };
   EXPECT_EQ(read({0x00, 0x10, 0, 0}).value(), 4096u);
-  EXPECT_EQ(read({0x01, 0x10, 0, 0}).error(), WireError::kTooLong);
-  EXPECT_EQ(read({0, 0, 0, 0}).error(), WireError::kTooLong);
-  EXPECT_EQ(read({0xff, 0xff, 0xff, 0xff}).error(), WireError::kTooLong);
+  EXPECT_EQ(read({0x01, 0x10, 0, 0}).error(), Error::kTooLong);
+  EXPECT_EQ(read({0, 0, 0, 0}).error(), Error::kTooLong);
+  EXPECT_EQ(read({0xff, 0xff, 0xff, 0xff}).error(), Error::kTooLong);
 }
 
 // ---- verified, but inconsistent ----
 
 /// decode()'s answer to samples::scenes() after a change of the first skeleton.
-Result<Message, WireError> scenes_with(const std::function<void(pose::StrandSkeleton&)>& change) {
+Result<Message, Error> scenes_with(const std::function<void(pose::StrandSkeleton&)>& change) {
   Scenes scenes = samples::scenes();
   change(std::get<pose::StrandSkeleton>(scenes.scenes[0].skeleton));
   return decode(samples::body(encode(scenes)));
@@ -138,13 +138,13 @@ TEST(HostileBytes, SkeletonsOutOfBoundsAreRefused) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const auto result = scenes_with(changes[i]);
     ASSERT_FALSE(result.has_value()) << i;
-    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(result.error(), Error::kInconsistent) << i;
   }
 }
 
 /// decode()'s answer to samples::all_kinds() after a change of scene `index`, which is of this kind.
 template <class Kind>
-Result<Message, WireError> kinds_with(std::size_t index, const std::function<void(Kind&)>& change) {
+Result<Message, Error> kinds_with(std::size_t index, const std::function<void(Kind&)>& change) {
   Scenes scenes = samples::all_kinds();
   change(std::get<Kind>(scenes.scenes[index].skeleton));
   return decode(samples::body(encode(scenes)));
@@ -158,7 +158,7 @@ TEST(HostileBytes, ClothsOutOfBoundsAreRefused) {
       [](auto& s) { s.rest_z_m[0] = 1e30f; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i)
-    EXPECT_EQ(kinds_with<pose::GridSkeleton>(1, changes[i]).error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(kinds_with<pose::GridSkeleton>(1, changes[i]).error(), Error::kInconsistent) << i;
 }
 
 TEST(HostileBytes, AFoliageThatIsNotKnownIsGreen) {
@@ -200,7 +200,7 @@ TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const auto result = kinds_with<pose::TreeSkeleton>(2, changes[i]);
     ASSERT_FALSE(result.has_value()) << i;
-    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(result.error(), Error::kInconsistent) << i;
   }
 }
 
@@ -219,17 +219,16 @@ TEST(HostileBytes, SurfacesOutOfBoundsAreRefused) {
       [](auto& s) { s.axis_z_m[3] = kNan; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i)
-    EXPECT_EQ(kinds_with<pose::SurfaceSkeleton>(4, changes[i]).error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(kinds_with<pose::SurfaceSkeleton>(4, changes[i]).error(), Error::kInconsistent) << i;
 }
 
 TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
   for (const double over_s : {-1.0, kMaxFade_s + 1.0, std::nan("")}) {
-    EXPECT_EQ(decode(samples::body(encode(Control{.scene = "elm", .over_s = over_s}))).error(),
-              WireError::kInconsistent);
+    EXPECT_EQ(decode(samples::body(encode(Control{.scene = "elm", .over_s = over_s}))).error(), Error::kInconsistent);
   }
   ControlReply reply;
   reply.scenes.resize(kMaxScenes + 1);
-  EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
+  EXPECT_EQ(decode(samples::body(encode(reply))).error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, ParametersBeyondTheLimitsAreNeverDecoded) {
@@ -270,24 +269,24 @@ TEST(HostileBytes, ParametersBeyondTheLimitsAreNeverDecoded) {
 TEST(HostileBytes, PlayerCommandsOutOfBoundsAreRefused) {
   const auto refusal = [](const PlayerCommand& command) {
     const auto message = decode(samples::body(encode(Control{.scene = "", .player = command})));
-    return message ? std::optional<WireError>{} : message.error();
+    return message ? std::optional<Error>{} : message.error();
   };
   EXPECT_FALSE(refusal({}));
   for (const double rate : {-1.0, 0.0, 0.001, 1e9, std::nan("")}) {
-    EXPECT_EQ(refusal({.rate = rate}), WireError::kInconsistent) << rate;
+    EXPECT_EQ(refusal({.rate = rate}), Error::kInconsistent) << rate;
   }
-  EXPECT_EQ(refusal({.count = 0}), WireError::kInconsistent);
-  EXPECT_EQ(refusal({.count = kMaxSteps + 1}), WireError::kInconsistent);
-  EXPECT_EQ(refusal({.action = static_cast<PlayerAction>(6)}), WireError::kInconsistent);
+  EXPECT_EQ(refusal({.count = 0}), Error::kInconsistent);
+  EXPECT_EQ(refusal({.count = kMaxSteps + 1}), Error::kInconsistent);
+  EXPECT_EQ(refusal({.action = static_cast<PlayerAction>(6)}), Error::kInconsistent);
 
   ControlReply reply;
   for (const double position_s : {-1.0, std::nan(""), 1e300}) {
     reply.players.assign(1, {});
     reply.players[0].position_s = position_s;
-    EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent) << position_s;
+    EXPECT_EQ(decode(samples::body(encode(reply))).error(), Error::kInconsistent) << position_s;
   }
   reply.players.assign(kMaxSensors + 1, {});
-  EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
+  EXPECT_EQ(decode(samples::body(encode(reply))).error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
@@ -298,7 +297,7 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
       [](auto& f) { f.wind.wind.v_m_s = 1e9; },
       [](auto& f) { f.wind.live_weight = 1.5; },
       [](auto& f) { f.wind.reading_age_s = -1.0; },
-      [](auto& f) { f.wind.source = static_cast<wind::WindSource>(3); },
+      [](auto& f) { f.wind.source = static_cast<wind::Source>(3); },
       [](auto& f) { f.wind.upwind_m = std::nan(""); },
       [](auto& f) { f.wind.upwind_m = 1e7; },
       [](auto& f) { f.wind.to_middle_s = std::nan(""); },
@@ -309,7 +308,7 @@ TEST(HostileBytes, FramesOutOfBoundsAreRefused) {
     changes[i](info);
     const auto result = decode(samples::body(samples::frame_bytes(37, info)));
     ASSERT_FALSE(result.has_value()) << i;
-    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(result.error(), Error::kInconsistent) << i;
   }
 }
 
@@ -344,7 +343,7 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
     changes[i](sensors);
     const auto result = decode(samples::body(encode(sensors)));
     ASSERT_FALSE(result.has_value()) << i;
-    EXPECT_EQ(result.error(), WireError::kInconsistent) << i;
+    EXPECT_EQ(result.error(), Error::kInconsistent) << i;
   }
 }
 
@@ -352,7 +351,7 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
 
 /// decode()'s answer to a message of this kind, whose body `build` adds.
 template <class Build>
-Result<Message, WireError> decode_built(fb::Body kind, Build build) {
+Result<Message, Error> decode_built(fb::Body kind, Build build) {
   flatbuffers::FlatBufferBuilder builder;
   const flatbuffers::Offset<void> body = build(builder);
   fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, kind, body));
@@ -368,7 +367,7 @@ TEST(HostileBytes, PosesOfTwoLengthsAreRefused) {
     const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
     return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(std::vector{scene})).Union();
   });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, AnAbsurdQuantisationStepIsRefused) {
@@ -379,13 +378,13 @@ TEST(HostileBytes, AnAbsurdQuantisationStepIsRefused) {
       const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
       return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(std::vector{scene})).Union();
     });
-    EXPECT_EQ(result.error(), WireError::kInconsistent) << step;
+    EXPECT_EQ(result.error(), Error::kInconsistent) << step;
   }
 }
 
 /// decode()'s answer to a frame of one scene, whose pose `build` adds.
 template <class Build>
-Result<Message, WireError> decode_pose(fb::Pose kind, float opacity, Build build) {
+Result<Message, Error> decode_pose(fb::Pose kind, float opacity, Build build) {
   return decode_built(fb::Body_Frame, [&](auto& builder) {
     const flatbuffers::Offset<void> pose = build(builder);
     const auto scene = fb::CreateScenePose(builder, kind, pose, opacity);
@@ -476,7 +475,7 @@ TEST(HostileBytes, APictureThatIsNotAsLargeAsItSaysIsRefused) {
   for (const auto& [width_px, height_px, bytes] :
        {Case{5, 4, 59}, Case{5, 4, 61}, Case{5, 0, 60}, Case{0, 0, 3}, Case{8192, 1, 3 * 8192},
         Case{1025, 1024, 3 * 1025 * 1024}, Case{1U << 31, 1U << 31, 0}, Case{0xFFFFFFFF, 0xFFFFFFFF, 3}}) {
-    EXPECT_EQ(with_image(width_px, height_px, bytes).error(), WireError::kInconsistent)
+    EXPECT_EQ(with_image(width_px, height_px, bytes).error(), Error::kInconsistent)
         << width_px << ' ' << height_px << ' ' << bytes;
   }
 }
@@ -496,12 +495,12 @@ TEST(HostileBytes, ScenesThatShareAPictureDoNotAskForMuchMemory) {
     });
   };
   EXPECT_TRUE(shared(8).has_value());
-  EXPECT_EQ(shared(9).error(), WireError::kInconsistent);
+  EXPECT_EQ(shared(9).error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, AFrameWithoutWindIsRefused) {
   const auto result = decode_built(fb::Body_Frame, [](auto& builder) { return fb::CreateFrame(builder).Union(); });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, ASkeletonOfUnequalArraysIsRefused) {
@@ -511,7 +510,7 @@ TEST(HostileBytes, ASkeletonOfUnequalArraysIsRefused) {
     const auto scene = fb::CreateScene(builder, 0, 0, fb::Skeleton_StrandSkeleton, skeleton);
     return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
   });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, ASceneWithoutSkeletonIsRefused) {
@@ -519,7 +518,7 @@ TEST(HostileBytes, ASceneWithoutSkeletonIsRefused) {
     const auto scene = fb::CreateScene(builder);
     return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
   });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, FewBytesCannotAskForMuchMemory) {
@@ -534,7 +533,7 @@ TEST(HostileBytes, FewBytesCannotAskForMuchMemory) {
     const fb::Wind wind(1, 1, 0, 0, fb::WindSource_Default);
     return fb::CreateFrame(builder, 1, 1, 1.0, 1, &wind, builder.CreateVector(scenes)).Union();
   });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, ATreesLevelsCannotAskForMuchMemoryEither) {
@@ -544,7 +543,7 @@ TEST(HostileBytes, ATreesLevelsCannotAskForMuchMemoryEither) {
     for (auto& level : levels) level = fb::CreateStrandPose(builder, 1e-4f, bends, bends);
     return fb::CreateTreePose(builder, builder.CreateVector(levels)).Union();
   });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, AVeryLongTextIsRefused) {
@@ -552,7 +551,7 @@ TEST(HostileBytes, AVeryLongTextIsRefused) {
     return fb::CreateSubscribe(builder, 1, true, false, builder.CreateString(std::string(kMaxTextBytes + 1, 'x')))
         .Union();
   });
-  EXPECT_EQ(result.error(), WireError::kInconsistent);
+  EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
 TEST(HostileBytes, ARawTraceOfMoreThanIsPromisedIsRefused) {
@@ -565,8 +564,8 @@ TEST(HostileBytes, ARawTraceOfMoreThanIsPromisedIsRefused) {
   };
   EXPECT_TRUE(trace(kMaxRawBytes, 2000).has_value());
   EXPECT_TRUE(trace(0, 0).has_value());
-  EXPECT_EQ(trace(kMaxRawBytes + 1, 2000).error(), WireError::kInconsistent);
-  EXPECT_EQ(trace(8, 7).error(), WireError::kInconsistent) << "more bytes than the message has";
+  EXPECT_EQ(trace(kMaxRawBytes + 1, 2000).error(), Error::kInconsistent);
+  EXPECT_EQ(trace(8, 7).error(), Error::kInconsistent) << "more bytes than the message has";
 }
 
 // ---- of an older or a newer server ----
@@ -578,8 +577,7 @@ TEST(OlderServer, AWindWithoutAPlaceIsInTheMiddleAndGustsAreTheRealOnes) {
   const auto sensors = decode_built(fb::Body_Sensors, [&](auto& builder) {
     return fb::CreateSensors(builder, 0, &wind, 0, 0, fb::CreateShaping(builder)).Union();
   });
-  for (const wind::WindState& state :
-       {std::get<Frame>(frame.value()).info.wind, std::get<Sensors>(sensors.value()).wind}) {
+  for (const wind::State& state : {std::get<Frame>(frame.value()).info.wind, std::get<Sensors>(sensors.value()).wind}) {
     EXPECT_EQ(state.upwind_m, 0.0);
     EXPECT_EQ(state.to_middle_s, 0.0);
     EXPECT_FALSE(state.is_place_configured);
@@ -590,8 +588,8 @@ TEST(OlderServer, AWindWithoutAPlaceIsInTheMiddleAndGustsAreTheRealOnes) {
 
 TEST(NewerServer, ABodyOfAnUnknownKindIsToldApartFromABadOne) {
   const auto build = [](auto& builder) { return fb::CreateHello(builder).Union(); };
-  EXPECT_EQ(decode_built(static_cast<fb::Body>(fb::Body_MAX + 1), build).error(), WireError::kUnknown);
-  EXPECT_EQ(decode_built(fb::Body_NONE, build).error(), WireError::kUnknown);
+  EXPECT_EQ(decode_built(static_cast<fb::Body>(fb::Body_MAX + 1), build).error(), Error::kUnknown);
+  EXPECT_EQ(decode_built(fb::Body_NONE, build).error(), Error::kUnknown);
 }
 
 TEST(NewerServer, ASceneOfAnUnknownKindHasNoStrandsAndFitsItsPoses) {

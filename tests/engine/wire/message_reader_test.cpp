@@ -62,7 +62,7 @@ TEST(MessageReader, ABadMessageIsToldOnceAndTheNextOneIsRead) {
   bad[kSizePrefixBytes + 4] = 'X';  // the file identifier
   MessageReader reader;
   reader.feed(joined({bad, encode(samples::hello())}));
-  EXPECT_EQ(reader.next().value().error(), WireError::kNotVerified);
+  EXPECT_EQ(reader.next().value().error(), Error::kNotVerified);
   EXPECT_TRUE(reader.next().value().has_value());
   EXPECT_FALSE(reader.next().has_value());
 }
@@ -71,16 +71,16 @@ TEST(MessageReader, AnAbsurdLengthEndsTheStream) {
   const Bytes huge{0xff, 0xff, 0xff, 0x7f};
   MessageReader reader;
   reader.feed(huge);
-  EXPECT_EQ(reader.next().value().error(), WireError::kTooLong);
+  EXPECT_EQ(reader.next().value().error(), Error::kTooLong);
   reader.feed(encode(samples::hello()));
-  EXPECT_EQ(reader.next().value().error(), WireError::kTooLong);
+  EXPECT_EQ(reader.next().value().error(), Error::kTooLong);
   EXPECT_EQ(reader.buffered_bytes(), 0u);
 }
 
 TEST(MessageReader, AnEmptyMessageEndsTheStream) {
   MessageReader reader;
   reader.feed(Bytes{0, 0, 0, 0});
-  EXPECT_EQ(reader.next().value().error(), WireError::kTooLong);
+  EXPECT_EQ(reader.next().value().error(), Error::kTooLong);
 }
 
 TEST(MessageReader, ItsLimitIsTheCallers) {
@@ -90,7 +90,7 @@ TEST(MessageReader, ItsLimitIsTheCallers) {
   EXPECT_TRUE(enough.next().value().has_value());
   MessageReader too_little(hello.size() - kSizePrefixBytes - 1);
   too_little.feed(hello);
-  EXPECT_EQ(too_little.next().value().error(), WireError::kTooLong);
+  EXPECT_EQ(too_little.next().value().error(), Error::kTooLong);
 }
 
 TEST(MessageReader, BytesThatNobodyTakesOutDoNotPileUp) {
@@ -100,7 +100,7 @@ TEST(MessageReader, BytesThatNobodyTakesOutDoNotPileUp) {
     reader.feed(chunk);
     ASSERT_LE(reader.buffered_bytes(), 4096 + kSizePrefixBytes + chunk.size());
   }
-  EXPECT_EQ(reader.next().value().error(), WireError::kTooLong);
+  EXPECT_EQ(reader.next().value().error(), Error::kTooLong);
 }
 
 }  // namespace

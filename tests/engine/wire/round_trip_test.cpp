@@ -202,8 +202,8 @@ TEST(WireRoundTrip, PosesOfAllKindsComeBackAsFineAsTheyArePromised) {
   EXPECT_TRUE(fits(frame, samples::all_kinds()));
   constexpr double kClose[][2] = {{5e-5, 5e-5}, {0.1e-3, 0.1e-3}, {5e-5, 5e-5}, {0.2e-3, 0.0}, {0.2e-3, 2e-3}};
   for (std::size_t scene = 0; scene < sent.size(); ++scene) {
-    const pose::PoseArrays<const float> a(sent[scene]);
-    const pose::PoseArrays<const float> b(frame.poses[scene]);
+    const pose::Arrays<const float> a(sent[scene]);
+    const pose::Arrays<const float> b(frame.poses[scene]);
     ASSERT_EQ(a.size(), b.size()) << scene;
     for (std::size_t k = 0; k < a.size(); ++k) {
       ASSERT_EQ(a[k].size(), b[k].size()) << scene;
@@ -448,7 +448,7 @@ TEST(WireRoundTrip, ALatenessThatCannotBeIsRefused) {
     for (double Lateness::*member : {&Lateness::p50_s, &Lateness::p99_s, &Lateness::max_s}) {
       Sensors sensors = samples::sensors();
       (*sensors.tick_lateness).*member = wrong_s;
-      EXPECT_EQ(decode(samples::body(encode(sensors))).error(), WireError::kInconsistent);
+      EXPECT_EQ(decode(samples::body(encode(sensors))).error(), Error::kInconsistent);
     }
   }
 }
@@ -456,7 +456,7 @@ TEST(WireRoundTrip, ALatenessThatCannotBeIsRefused) {
 TEST(WireRoundTrip, AnAnimationThatCannotBeIsRefused) {
   const auto is_refused = [](const AnimationStatus& animation) {
     const auto message = decode(samples::body(encode(Sensors{.sensors = {}, .wind = {}, .animation = animation})));
-    return !message && message.error() == WireError::kInconsistent;
+    return !message && message.error() == Error::kInconsistent;
   };
   for (const double wrong_s :
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

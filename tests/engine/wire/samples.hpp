@@ -166,9 +166,9 @@ inline pose::SurfacePose risen(const pose::SurfaceSkeleton& surface) {
   return pose;
 }
 
-inline wind::WindState wind() {
+inline wind::State wind() {
   return {.wind = {3.25, -4.5},
-          .source = wind::WindSource::kHandover,
+          .source = wind::Source::kHandover,
           .live_weight = 0.75,
           .reading_age_s = 1.5,
           .upwind_m = -12.5,

@@ -81,7 +81,7 @@ inline bool is_sound(const pose::Pose& pose) {
            surface->row_drop_m.size() == surface->row_east_m.size() &&
            surface->row_slope_east.size() == surface->row_east_m.size() &&
            surface->row_slope_south.size() == surface->row_east_m.size();
-  const pose::PoseArrays<const float> arrays(pose);  // of strands and trees: pairs of one length
+  const pose::Arrays<const float> arrays(pose);  // of strands and trees: pairs of one length
   for (std::size_t i = 0; i + 1 < arrays.size(); i += 2) {
     if (arrays[i].size() != arrays[i + 1].size()) return false;
   }

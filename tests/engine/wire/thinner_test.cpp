@@ -38,8 +38,8 @@ TEST(Thinner, WhoWantsAllOfItGetsAllOfIt) {
   ASSERT_EQ(got.scenes.scenes.size(), 5u);
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(got.scenes.scenes[i].skeleton, samples::all_kinds().scenes[i].skeleton) << i;
-    const pose::PoseArrays<const float> a(got.frame.poses[i]);
-    const pose::PoseArrays<const float> b(whole.poses[i]);
+    const pose::Arrays<const float> a(got.frame.poses[i]);
+    const pose::Arrays<const float> b(whole.poses[i]);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_TRUE(std::ranges::equal(a[k], b[k])) << i << " " << k;
   }

@@ -15,7 +15,7 @@ namespace {
 
 TEST(WorkerPool, DoesEachPartOfEachWorkOnceAndWaitsForAll) {
   for (const std::size_t threads : {0U, 1U, 2U, 3U, 7U}) {
-    WorkerPool pool(threads);
+    Pool pool(threads);
     EXPECT_EQ(pool.size(), std::max<std::size_t>(threads, 1));
     std::vector<int> done(1000, 0);
     for (int work = 0; work < 300; ++work) {
@@ -28,18 +28,18 @@ TEST(WorkerPool, DoesEachPartOfEachWorkOnceAndWaitsForAll) {
 }
 
 TEST(WorkerPool, EndsWhileItsThreadsSleepOrHaveJustBegun) {
-  for (int i = 0; i < 50; ++i) WorkerPool(3);
-  WorkerPool pool(3);
+  for (int i = 0; i < 50; ++i) Pool(3);
+  Pool pool(3);
   std::atomic<int> calls = 0;
   pool.run([&calls](Part) { ++calls; });
   EXPECT_EQ(calls, 3);
 }
 
 TEST(WorkerPool, AScenesPoseIsTheSameBitForBitHoweverManyThreadsShareIt) {
-  for (const scenes::SceneDescription* kind : scenes::scene_table()) {
+  for (const scenes::Description* kind : scenes::scene_table()) {
     const auto values = ParameterValues::resolve(kind->parameters, {}).value();
     const auto hash_with = [&](std::size_t threads) {
-      WorkerPool pool(threads);
+      Pool pool(threads);
       const auto scene = kind->make(values, {.seed = 1});
       std::uint64_t hash = pose::kPoseHashSeed;
       for (std::uint64_t tick = 0; tick < 15; ++tick) {

@@ -26,14 +26,14 @@ TEST(PlayedWind, ThatIsRecordedKeepsItsPaceHoldsBetweenReadingsAndBeginsAgain) {
   const test::TemporaryFolder folder;
   const auto file = folder / "three.windlog";
   {
-    auto writer = drivers::windlog::WindlogWriter::open(file);
+    auto writer = drivers::windlog::Writer::open(file);
     ASSERT_TRUE(writer.has_value());
     const Instant start{MonoTime(1h), UtcTime(std::chrono::sys_days(std::chrono::year(2024) / 6 / 1))};
     ASSERT_TRUE(writer->begin_session({start, "test", ""}));
     const auto sensor = writer->add_sensor("mast", "test", "");
     ASSERT_TRUE(sensor.has_value());
     const auto append = [&](Nanoseconds at, double speed_m_s, std::optional<double> direction_deg) {
-      wind::WindReading reading;
+      wind::Reading reading;
       reading.time = {start.mono + at, start.utc + at};
       reading.speed_m_s = speed_m_s;
       reading.direction_deg = direction_deg;

@@ -27,8 +27,7 @@ class RecordingCommand : public testing::Test {
 
   static std::vector<drivers::windlog::PlayedReading> readings_of(const std::filesystem::path& file,
                                                                   const std::string& sensor = "*") {
-    drivers::windlog::WindlogPlayback playback =
-        drivers::windlog::WindlogPlayback::open(file, {.sensor = sensor}).value();
+    drivers::windlog::Playback playback = drivers::windlog::Playback::open(file, {.sensor = sensor}).value();
     std::vector<drivers::windlog::PlayedReading> readings;
     while (const auto reading = playback.next().value()) readings.push_back(*reading);
     return readings;

@@ -35,7 +35,7 @@ std::vector<std::string> console_command(const std::vector<std::string>& options
 
 void expect_the_wind(const RecordingSink& sink) {
   ASSERT_FALSE(sink.readings.empty());
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 16 * 0.44704, 1e-9);
     EXPECT_EQ(reading.direction_deg, 123.0);
   }

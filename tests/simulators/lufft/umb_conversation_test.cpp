@@ -26,7 +26,7 @@ std::vector<std::string> station_command(const std::vector<std::string>& options
 
 void expect_the_wind(const RecordingSink& sink) {
   ASSERT_FALSE(sink.readings.empty());
-  for (const wind::WindReading& reading : sink.readings) {
+  for (const wind::Reading& reading : sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 7.25, 1e-6);
     EXPECT_NEAR(reading.direction_deg.value_or(-1.0), 123.0, 1e-4);
   }

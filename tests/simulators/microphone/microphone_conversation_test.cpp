@@ -41,7 +41,7 @@ TEST(MicrophoneAndSimulator, FourFacesTellSpeedAndDirection) {
             {"faces", std::string("0 90 180 270")},
             {"direction_smoothing", 2.0}});
   rig.next_speed_m_s(20);
-  const wind::WindReading& reading = rig.sink.readings.back();
+  const wind::Reading& reading = rig.sink.readings.back();
   ASSERT_TRUE(reading.direction_deg) << rig.sink.last_detail();
   const double off_deg = std::remainder(*reading.direction_deg - 300.0, 360.0);
   std::printf("direction off by %.1f degrees, speed %.2f m/s\n", off_deg, reading.speed_m_s);

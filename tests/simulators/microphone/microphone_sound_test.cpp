@@ -25,10 +25,10 @@ namespace {
 constexpr double kRate_hz = 16000.0;
 
 /// So many seconds of a steady wind.
-test::Sound sound_of(MicrophoneOptions options, double speed_m_s, double seconds, double direction_deg = 0.0,
+test::Sound sound_of(Options options, double speed_m_s, double seconds, double direction_deg = 0.0,
                      std::optional<core::FaultKind> fault = std::nullopt) {
   options.rate_hz = kRate_hz;
-  MicrophoneSound sound(options);
+  Sound sound(options);
   test::Sound out{kRate_hz, options.channels, {}};
   // The first second brings the wind up, and is not kept.
   std::vector<float> ignored;
@@ -65,7 +65,7 @@ double level_db(const test::Sound& sound, bool ignores_sound = true) {
 
 TEST(MicrophoneSoundTest, GrowsWithTheWindToItsExponent) {
   for (const double exponent : {1.3, 2.0, 3.0}) {
-    const MicrophoneOptions options{.exponent = exponent, .level_at_10_m_s_db = -40.0, .noise_db = -140.0};
+    const Options options{.exponent = exponent, .level_at_10_m_s_db = -40.0, .noise_db = -140.0};
     EXPECT_NEAR(rms_db(sound_of(options, 10.0, 14.0)), -40.0, 1.0);
     EXPECT_NEAR(rms_db(sound_of(options, 10.0, 4.0)) - rms_db(sound_of(options, 5.0, 4.0)),
                 20.0 * exponent * std::log10(2.0), 0.01);
@@ -88,8 +88,8 @@ TEST(MicrophoneSoundTest, FallsAsFrequencyToTheMinusSevenThirds) {
 }
 
 TEST(MicrophoneSoundTest, WindIsHeardByEachAloneAndVoicesByAll) {
-  const MicrophoneOptions wind{.channels = 2, .level_at_10_m_s_db = -30.0};
-  MicrophoneOptions noisy = wind;
+  const Options wind{.channels = 2, .level_at_10_m_s_db = -30.0};
+  Options noisy = wind;
   noisy.voice_db = -40.0;
   noisy.music_db = -40.0;
   const double alone_db = level_db(sound_of(wind, 6.0, 14.0));
@@ -102,9 +102,9 @@ TEST(MicrophoneSoundTest, WindIsHeardByEachAloneAndVoicesByAll) {
 }
 
 TEST(MicrophoneSoundTest, IsTheSameBitForBit) {
-  const MicrophoneOptions options{.channels = 3, .voice_db = -40.0, .music_db = -50.0, .has_faces = true, .seed = 9};
+  const Options options{.channels = 3, .voice_db = -40.0, .music_db = -50.0, .has_faces = true, .seed = 9};
   EXPECT_EQ(sound_of(options, 7.0, 1.0, 33.0).samples, sound_of(options, 7.0, 1.0, 33.0).samples);
-  MicrophoneOptions other = options;
+  Options other = options;
   other.seed = 10;
   EXPECT_NE(sound_of(options, 7.0, 1.0).samples, sound_of(other, 7.0, 1.0).samples);
 }
@@ -129,7 +129,7 @@ TEST(MicrophoneSoundTest, SuffersFaultsAsADeviceDoes) {
 }
 
 TEST(MicrophoneSoundTest, TwoKnownWindsCalibrateTheDriverForAllOthers) {
-  const MicrophoneOptions options{.exponent = 1.8, .noise_db = -90.0};
+  const Options options{.exponent = 1.8, .noise_db = -90.0};
   // From two points the power law follows: P = (U / gain)^(2 n).
   const double low_db = level_db(sound_of(options, 3.0, 14.0));
   const double high_db = level_db(sound_of(options, 9.0, 14.0));
@@ -157,7 +157,7 @@ TEST(MicrophoneSoundTest, TwoKnownWindsCalibrateTheDriverForAllOthers) {
 
 TEST(MicrophoneFile, IsAWavFileThatSaysWhatItHolds) {
   const test::TemporaryFolder folder;
-  MicrophoneOptions options{.channels = 2, .rate_hz = 8000.0};
+  Options options{.channels = 2, .rate_hz = 8000.0};
   const auto wind = [] {
     return core::MeasuredWind(core::play_synthetic_wind({.mean_speed_m_s = 8.0, .turbulence_intensity = 0.0}));
   };
@@ -226,7 +226,7 @@ class MicrophoneSocket : public testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  MicrophoneSimulator simulator_;
+  Simulator simulator_;
   double time_s_ = 0.0;
 };
 

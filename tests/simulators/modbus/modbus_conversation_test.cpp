@@ -75,7 +75,7 @@ TEST(DriverAndSimulator, AgreeOnTheWind) {
   const auto sensor = open_sensor({{"port", std::int64_t{std::stoi(simulator.port())}}});
   Bench bench;
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.poll_for_reading(*sensor));
-  for (const wind::WindReading& reading : bench.sink.readings) {
+  for (const wind::Reading& reading : bench.sink.readings) {
     EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-9);
     EXPECT_EQ(reading.direction_deg, 123.0);
   }

@@ -75,7 +75,7 @@ class PlayedDeviceTest : public testing::TestWithParam<PlayedDevice> {
       EXPECT_EQ(sink.station_quantities.empty(), !says_more);
       if (says_more) expect_station(device, sink.station_quantities.back());
       EXPECT_TRUE(sink.refusals.empty());
-      const wind::WindReading& reading = sink.readings.back();
+      const wind::Reading& reading = sink.readings.back();
       EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
       EXPECT_EQ(reading.direction_deg.has_value(), device.has_direction);
       EXPECT_NEAR(reading.direction_deg.value_or(135.0), 135.0, 1e-6);
@@ -193,7 +193,7 @@ TEST_P(SharedLineTest, ServesAllWhoAreWellAndSlowsThemByOneTimeOutAtMostForOneWh
   EXPECT_TRUE(one->wait_until([](const RecordingSink& sink) { return sink.readings.size() >= 3; }));
   for (const auto* sensor : {&one, &two, &three}) {
     (*sensor)->look([](const RecordingSink& sink) {
-      for (const wind::WindReading& reading : sink.readings) EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
+      for (const wind::Reading& reading : sink.readings) EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
     });
   }
 }

@@ -82,7 +82,7 @@ class ModbusFaultBench {
   void expect_true_wind() {
     ASSERT_TRUE(returns()) << detail();
     sensor.look([](const RecordingSink& sink) {
-      for (const wind::WindReading& reading : sink.readings) {
+      for (const wind::Reading& reading : sink.readings) {
         EXPECT_NEAR(reading.speed_m_s, kWindSpeed_m_s, 1e-9);
         EXPECT_EQ(reading.direction_deg.value_or(kWindDirection_deg), kWindDirection_deg);
       }
@@ -95,7 +95,7 @@ class ModbusFaultBench {
     EXPECT_TRUE(sensor.wait_until([&](const RecordingSink& sink) { return sink.readings.size() >= count; }));
     return sensor.look([](const RecordingSink& sink) {
       std::vector<double> speeds;
-      for (const wind::WindReading& reading : sink.readings) speeds.push_back(reading.speed_m_s);
+      for (const wind::Reading& reading : sink.readings) speeds.push_back(reading.speed_m_s);
       return speeds;
     });
   }

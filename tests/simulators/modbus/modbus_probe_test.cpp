@@ -34,23 +34,23 @@ class ModbusProbeTest : public testing::Test {
       plan_.lines = drivers::modbus::likely_modbus_lines(simulator_->where(), plan_.profiles, {9600}, {'N'});
     }
   }
-  std::vector<drivers::modbus::ModbusHit> probe() {
-    std::vector<drivers::modbus::ModbusHit> hits;
+  std::vector<drivers::modbus::Hit> probe() {
+    std::vector<drivers::modbus::Hit> hits;
     const auto count = drivers::modbus::probe_modbus(
         plan_, [this](const drivers::bus::ModbusLine&, std::uint8_t, double) { ++tried_; },
-        [&hits](const drivers::modbus::ModbusHit& hit) { hits.push_back(hit); }, interruption_);
+        [&hits](const drivers::modbus::Hit& hit) { hits.push_back(hit); }, interruption_);
     EXPECT_TRUE(count);
     EXPECT_EQ(*count, static_cast<int>(hits.size()));
     return hits;
   }
-  static std::vector<std::string> names_of(const drivers::modbus::ModbusHit& hit) {
+  static std::vector<std::string> names_of(const drivers::modbus::Hit& hit) {
     std::vector<std::string> names;
-    for (const drivers::modbus::ModbusFit& fit : hit.fits) names.push_back(fit.profile);
+    for (const drivers::modbus::Fit& fit : hit.fits) names.push_back(fit.profile);
     return names;
   }
 
   std::unique_ptr<test::ModbusSimulatorProgram> simulator_;
-  drivers::modbus::ModbusProbePlan plan_;
+  drivers::modbus::ProbePlan plan_;
   drivers::bus::Interruption interruption_;
   int tried_ = 0;
 };
@@ -117,7 +117,7 @@ TEST_F(ModbusProbeTest, SettlesAScaleByTheWindForceThatTheDeviceItselfMakesOfIt)
   plan_.ids = {1, 2};
   const auto hits = probe();
   ASSERT_EQ(hits.size(), 2U);
-  for (const drivers::modbus::ModbusHit& hit : hits) {
+  for (const drivers::modbus::Hit& hit : hits) {
     // Both are shown, and the right one first.
     ASSERT_EQ(hit.fits.size(), 2U);
     EXPECT_NEAR(*hit.fits[0].speed_m_s, 7.0, 1e-6);
@@ -162,7 +162,7 @@ TEST_F(ModbusProbeTest, RanksNothingThatReadsZerosAboveWhatIsLive) {
   EXPECT_THAT(names_of(hits[0]), testing::IsSupersetOf({"calypso-ulp", "xunchip-xm8589", "vaisala-wm80"}));
   EXPECT_NEAR(*fits.at(0).speed_m_s, 3.7, 1e-9);
   EXPECT_TRUE(std::ranges::is_partitioned(fits, drivers::modbus::is_live));
-  const auto calypso = std::ranges::find(fits, "calypso-ulp", &drivers::modbus::ModbusFit::profile);
+  const auto calypso = std::ranges::find(fits, "calypso-ulp", &drivers::modbus::Fit::profile);
   EXPECT_FALSE(drivers::modbus::is_live(*calypso));
 }
 
@@ -178,7 +178,7 @@ TEST_F(ModbusProbeTest, WritesTheTableThatTheDriverTakes) {
                 simulator_->where() + "\nspeed_slave = 3\n");
 
   drivers::bus::ModbusLine serial;
-  serial.framing = drivers::decode::modbus::ModbusFraming::kRtu;
+  serial.framing = drivers::decode::modbus::Framing::kRtu;
   serial.baud = 9600;
   serial.parity = 'E';
   EXPECT_THAT(drivers::modbus::sensor_table_for("roof", serial, hits[0].fits[0], named->profile, "/dev/serial/by-id/x"),
@@ -198,7 +198,7 @@ TEST_F(ModbusProbeTest, EndsWhenItIsInterrupted) {
   int found = 0;
   const auto count = drivers::modbus::probe_modbus(
       plan_, [](const drivers::bus::ModbusLine&, std::uint8_t, double) {},
-      [&](const drivers::modbus::ModbusHit&) {
+      [&](const drivers::modbus::Hit&) {
         ++found;
         interruption_.set();
       },
@@ -211,7 +211,7 @@ TEST_F(ModbusProbeTest, SaysWhyAPortCannotBeOpened) {
   plan_.lines = drivers::modbus::likely_modbus_lines("/no/such/port", {}, {}, {});
   plan_.ids = {1};
   const auto count = drivers::modbus::probe_modbus(
-      plan_, [](const drivers::bus::ModbusLine&, std::uint8_t, double) {}, [](const drivers::modbus::ModbusHit&) {},
+      plan_, [](const drivers::bus::ModbusLine&, std::uint8_t, double) {}, [](const drivers::modbus::Hit&) {},
       interruption_);
   ASSERT_FALSE(count);
   EXPECT_THAT(count.error().message, HasSubstr("cannot open /no/such/port"));

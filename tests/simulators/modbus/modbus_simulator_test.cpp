@@ -15,7 +15,6 @@
 namespace yuragi::simulators::modbus {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 using testing::ElementsAre;
 
 class SteadyWind final : public core::PlayedWind {
@@ -23,17 +22,17 @@ class SteadyWind final : public core::PlayedWind {
   core::PlayedMoment at(double time_s) override { return {8.6 + time_s, 359.7}; }
 };
 
-ModbusSimulator simulate(const std::vector<std::string>& devices, std::unique_ptr<ModbusPort> port,
-                         const ModbusFaultOptions& options = {}) {
-  std::vector<ModbusSlave> slaves;
+Simulator simulate(const std::vector<std::string>& devices, std::unique_ptr<Port> port,
+                   const FaultOptions& options = {}) {
+  std::vector<Slave> slaves;
   for (const std::string& device : devices) {
-    for (const ModbusSlave& slave : modbus_slaves(device)) slaves.push_back(slave);
+    for (const Slave& slave : modbus_slaves(device)) slaves.push_back(slave);
   }
   return {slaves, std::move(port), core::MeasuredWind(std::make_unique<SteadyWind>()), options};
 }
 
 /// Serves until there is nothing left to do.
-void serve_all(ModbusSimulator& simulator, double time_s, std::optional<core::FaultKind> fault) {
+void serve_all(Simulator& simulator, double time_s, std::optional<core::FaultKind> fault) {
   for (int ready_count = 1; ready_count > 0;) {
     std::vector<pollfd> waits;
     for (const int descriptor : simulator.descriptors()) waits.push_back({descriptor, POLLIN, 0});
@@ -76,7 +75,7 @@ class ModbusSimulatorTest : public testing::Test {
   const Bytes read_speed_ = {0, 7, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1};
   const Bytes read_vane_ = {0, 8, 0, 0, 0, 6, 2, 3, 0, 0, 0, 2};
   double time_s_ = 0.0;
-  ModbusSimulator simulator_ = simulate({"renke-rs-fsjt-rs-fxjt-n01"}, make_modbus_tcp_port("127.0.0.1", 0));
+  Simulator simulator_ = simulate({"renke-rs-fsjt-rs-fxjt-n01"}, make_modbus_tcp_port("127.0.0.1", 0));
 };
 
 TEST_F(ModbusSimulatorTest, PlaysTheWindInTimeOnTheRegistersOfBothDevices) {
@@ -184,8 +183,8 @@ class ModbusSerialSimulatorTest : public testing::Test {
 
   test::TemporaryFolder folder_;
   std::string link_ = folder_ / "wind";
-  ModbusSimulator simulator_ = simulate({"renke-rs-fsjt-n01", "renke-rs-fsjt-n01@7", "lambrecht-industry@9"},
-                                        make_modbus_rtu_port(link_), {.id = std::uint8_t{7}});
+  Simulator simulator_ = simulate({"renke-rs-fsjt-n01", "renke-rs-fsjt-n01@7", "lambrecht-industry@9"},
+                                  make_modbus_rtu_port(link_), {.id = std::uint8_t{7}});
   const Bytes read_1_ = {0x01, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x0A};
   const Bytes read_7_ = {0x07, 0x03, 0x00, 0x00, 0x00, 0x01, 0x84, 0x6C};
   const Bytes reply_1_ = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};  // 8.6 m/s, as in angara/ws_espy

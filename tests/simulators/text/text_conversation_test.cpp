@@ -55,7 +55,7 @@ class TextSensorRun : public test::LiveSensor {
   }
   void expect_the_wind() const {
     ASSERT_FALSE(sink.readings.empty());
-    for (const wind::WindReading& reading : sink.readings) {
+    for (const wind::Reading& reading : sink.readings) {
       EXPECT_NEAR(reading.speed_m_s, 7.0, 0.06);
       ASSERT_TRUE(reading.direction_deg.has_value());
       EXPECT_NEAR(*reading.direction_deg, 123.0, 0.6);

@@ -131,7 +131,7 @@ struct Heard {
   std::string asked;
   bool is_there = true;
 };
-class KeepingWire final : public TextWire {
+class KeepingWire final : public Wire {
  public:
   explicit KeepingWire(Heard& heard) : received_(heard) {}
   std::span<const core::FaultKind> known_faults() const override {
@@ -157,12 +157,12 @@ class GrowingWind final : public core::PlayedWind {
 
 class TextSimulatorTest : public testing::Test {
  protected:
-  TextSimulator make(double rate_hz, const std::string& format = "mwv") {
+  Simulator make(double rate_hz, const std::string& format = "mwv") {
     return {make_nmea_device({format}), std::make_unique<KeepingWire>(received_), rate_hz,
             core::MeasuredWind(std::make_unique<GrowingWind>()), 1};
   }
   /// From one moment to another, 50 times a second.
-  void serve(TextSimulator& simulator, double from_s, double to_s, std::optional<core::FaultKind> fault = {}) {
+  void serve(Simulator& simulator, double from_s, double to_s, std::optional<core::FaultKind> fault = {}) {
     for (int i = 0; from_s + 0.02 * i < to_s; ++i) simulator.serve({}, from_s + 0.02 * i, fault);
   }
 

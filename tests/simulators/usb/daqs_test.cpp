@@ -16,10 +16,10 @@ using testing::AnyOf;
 using testing::ElementsAre;
 using testing::Eq;
 
-constexpr UsbSetup kReadCount = {0xC0, 0x20, 0, 0, 4};
-constexpr UsbSetup kClearCount = {0x40, 0x20, 0, 0, 0};
-const UsbBytes kEnableCounter0 = {0x67, 0xF8, 0x03, 0x0B, 0x60, 0x00, 0x0D, 0x00, 0x44, 0x00, 0x0F, 0x00};
-const UsbBytes kReadVaneAndCup = {0x52, 0xF8, 0x03, 0x00, 0x56, 0x00, 0x00, 0x01, 0x00, 0x1F, 0x36, 0x00};
+constexpr SetupPacket kReadCount = {0xC0, 0x20, 0, 0, 4};
+constexpr SetupPacket kClearCount = {0x40, 0x20, 0, 0, 0};
+const Bytes kEnableCounter0 = {0x67, 0xF8, 0x03, 0x0B, 0x60, 0x00, 0x0D, 0x00, 0x44, 0x00, 0x0F, 0x00};
+const Bytes kReadVaneAndCup = {0x52, 0xF8, 0x03, 0x00, 0x56, 0x00, 0x00, 0x01, 0x00, 0x1F, 0x36, 0x00};
 
 std::uint64_t low_first(std::span<const std::uint8_t> bytes) {
   std::uint64_t value = 0;
@@ -27,13 +27,13 @@ std::uint64_t low_first(std::span<const std::uint8_t> bytes) {
   return value;
 }
 
-std::uint64_t count_of(UsbDevice& mcc) {
+std::uint64_t count_of(Device& mcc) {
   const auto reply = mcc.control(kReadCount, {});
   return reply && reply->size() == 4 ? low_first(*reply) : ~std::uint64_t{0};
 }
 
 /// The voltage at an input against ground, calibrated as the maker's driver does it.
-double volts_of(UsbDevice& mcc, std::uint16_t channel) {
+double volts_of(Device& mcc, std::uint16_t channel) {
   const auto code = mcc.control({0xC0, 0x10, channel, 1, 2}, {});
   const auto memory = mcc.control({0xC0, 0x30, static_cast<std::uint16_t>(0x100 + 8 * channel), 0, 8}, {});
   if (!code || !memory) return -99.0;
@@ -45,9 +45,9 @@ double volts_of(UsbDevice& mcc, std::uint16_t channel) {
 }
 
 /// The whole reply to a command; empty if there is none.
-UsbBytes ask(UsbDevice& labjack, const UsbBytes& command) {
+Bytes ask(Device& labjack, const Bytes& command) {
   if (!labjack.out(1, command)) return {};
-  return labjack.in(2, 64).value_or(UsbBytes{});
+  return labjack.in(2, 64).value_or(Bytes{});
 }
 
 double fixed_point(std::span<const std::uint8_t> bytes) {
@@ -82,7 +82,7 @@ TEST(Mcc1208Model, RefusesWhatTheDeviceDoesNotKnow) {
   EXPECT_FALSE(device->control({0xC0, 0x30, 768, 0, 4}, {}).has_value());
   EXPECT_FALSE(device->control({0xA1, 0x20, 0, 0, 4}, {}).has_value());
   EXPECT_FALSE(device->in(1, 64).has_value());
-  EXPECT_FALSE(device->out(2, UsbBytes{1}));
+  EXPECT_FALSE(device->out(2, Bytes{1}));
 }
 
 TEST(Mcc1208Model, SuffersItsFaults) {
@@ -109,7 +109,7 @@ TEST(LabjackModel, CountsOnlyOnceItsCounterIsOn) {
   EXPECT_THAT(ask(*device, kEnableCounter0),
               ElementsAre(0x5A, 0xF8, 0x03, 0x0B, 0x53, 0x00, 0x00, 0x00, 0x44, 0x00, 0x0F, 0x00));
   device->advance(2.0, {5.0, 178.0}, {});
-  const UsbBytes reply = ask(*device, kReadVaneAndCup);
+  const Bytes reply = ask(*device, kReadVaneAndCup);
   ASSERT_EQ(reply.size(), 16U);
   EXPECT_EQ(reply[6], 0);
   EXPECT_EQ(low_first(std::span(reply).subspan(11, 4)), 100U);
@@ -119,11 +119,11 @@ TEST(LabjackModel, GivesTheVanesVoltageByItsCalibration) {
   const auto device = make_daq("labjack-u3");
   device->advance(0.0, {5.0, 178.0}, {});
   ask(*device, kEnableCounter0);
-  const UsbBytes reply = ask(*device, kReadVaneAndCup);
+  const Bytes reply = ask(*device, kReadVaneAndCup);
   ASSERT_EQ(reply.size(), 16U);
   const double code = static_cast<double>(low_first(std::span(reply).subspan(9, 2)));
-  const UsbBytes slopes = ask(*device, {0x2A, 0xF8, 0x01, 0x2D, 0x03, 0x00, 0x00, 0x03});
-  const UsbBytes offsets = ask(*device, {0x2B, 0xF8, 0x01, 0x2D, 0x04, 0x00, 0x00, 0x04});
+  const Bytes slopes = ask(*device, {0x2A, 0xF8, 0x01, 0x2D, 0x03, 0x00, 0x00, 0x03});
+  const Bytes offsets = ask(*device, {0x2B, 0xF8, 0x01, 0x2D, 0x04, 0x00, 0x00, 0x04});
   ASSERT_EQ(slopes.size(), 40U);
   ASSERT_EQ(offsets.size(), 40U);
   EXPECT_NEAR(code * fixed_point(std::span(slopes).subspan(8)) + fixed_point(std::span(offsets).subspan(8)), 2.5,
@@ -132,12 +132,12 @@ TEST(LabjackModel, GivesTheVanesVoltageByItsCalibration) {
 
 TEST(LabjackModel, SaysWhatItIs) {
   const auto device = make_daq("labjack-u3");
-  UsbBytes command(26, 0);
+  Bytes command(26, 0);
   command[0] = 0x0B;  // the sum of the three that are not 0, with its carry
   command[1] = 0xF8;
   command[2] = 0x0A;
   command[3] = 0x08;
-  const UsbBytes reply = ask(*device, command);
+  const Bytes reply = ask(*device, command);
   ASSERT_EQ(reply.size(), 38U);
   EXPECT_EQ(low_first(std::span(reply).subspan(15, 4)), 320'012'345U);
   EXPECT_EQ(reply[37] & 18, 18) << "a U3-HV";
@@ -145,7 +145,7 @@ TEST(LabjackModel, SaysWhatItIs) {
 
 TEST(LabjackModel, AnswersACommandWithAWrongSumAsTheDeviceDoes) {
   const auto device = make_daq("labjack-u3");
-  UsbBytes damaged = kReadVaneAndCup;
+  Bytes damaged = kReadVaneAndCup;
   damaged[8] = 1;
   EXPECT_THAT(ask(*device, damaged), ElementsAre(0xB8, 0xB8));
   EXPECT_THAT(ask(*device, {}), ElementsAre(0xB8, 0xB8));
@@ -155,14 +155,14 @@ TEST(LabjackModel, SuffersItsFaults) {
   const auto device = make_daq("labjack-u3");
   const core::PlayedMoment wind = {5.0, 90.0};
   ask(*device, kEnableCounter0);
-  const UsbBytes right = ask(*device, kReadVaneAndCup);
+  const Bytes right = ask(*device, kReadVaneAndCup);
 
   device->advance(0.0, wind, core::FaultKind::kSilence);
   EXPECT_TRUE(ask(*device, kReadVaneAndCup).empty());
   device->advance(0.0, wind, core::FaultKind::kPartial);
   EXPECT_EQ(ask(*device, kReadVaneAndCup).size(), right.size() - 1);
   device->advance(0.0, wind, core::FaultKind::kBadChecksum);
-  const UsbBytes damaged = ask(*device, kReadVaneAndCup);
+  const Bytes damaged = ask(*device, kReadVaneAndCup);
   EXPECT_EQ(damaged.size(), right.size());
   EXPECT_EQ(damaged.at(4) - 1, std::accumulate(damaged.begin() + 6, damaged.end(), 0) & 0xFF);
   device->advance(0.0, wind, core::FaultKind::kWrongTransaction);
@@ -184,11 +184,11 @@ TEST(LabjackModel, SuffersItsFaults) {
 TEST(DaqModels, ShowDescriptorsOfTheLengthThatTheyTell) {
   for (const std::string& name : daq_names()) {
     const auto device = make_daq(name);
-    const UsbDescriptors& descriptors = device->descriptors();
+    const Descriptors& descriptors = device->descriptors();
     ASSERT_EQ(descriptors.device.size(), 18U) << name;
     EXPECT_EQ(descriptors.device[0], 18);
     EXPECT_THAT(low_first(std::span(descriptors.device).subspan(8, 4)), AnyOf(Eq(0x00E809DBU), Eq(0x00030CD5U)));
-    const UsbBytes& configuration = descriptors.configuration;
+    const Bytes& configuration = descriptors.configuration;
     EXPECT_EQ(low_first(std::span(configuration).subspan(2, 2)), configuration.size()) << name;
     std::size_t at = 0;
     while (at < configuration.size() && configuration[at] > 0) at += configuration[at];
@@ -207,7 +207,7 @@ TEST(DaqModels, StandAnyBytesFromTheHost) {
   for (const std::string& name : daq_names()) {
     const auto device = make_daq(name);
     for (int round = 0; round < 50'000; ++round) {
-      UsbBytes bytes(random() % 70);
+      Bytes bytes(random() % 70);
       for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
       if (bytes.size() >= 4 && random() % 2 == 0) {
         bytes[1] = 0xF8;
@@ -215,9 +215,10 @@ TEST(DaqModels, StandAnyBytesFromTheHost) {
       }
       const auto fault = random() % 8;
       device->advance(round * 0.01, {5.0, 90.0}, fault < kinds.size() ? std::optional(kinds[fault]) : std::nullopt);
-      const UsbSetup setup = {static_cast<std::uint8_t>(random() % 2 == 0 ? 0xC0 : random()),
-                              static_cast<std::uint8_t>(random() % 0x50), static_cast<std::uint16_t>(random() % 0x400),
-                              static_cast<std::uint16_t>(random()), static_cast<std::uint16_t>(random() % 100)};
+      const SetupPacket setup = {static_cast<std::uint8_t>(random() % 2 == 0 ? 0xC0 : random()),
+                                 static_cast<std::uint8_t>(random() % 0x50),
+                                 static_cast<std::uint16_t>(random() % 0x400), static_cast<std::uint16_t>(random()),
+                                 static_cast<std::uint16_t>(random() % 100)};
       if (const auto reply = device->control(setup, bytes)) {
         EXPECT_LE(reply->size(), setup.length);
       }

@@ -12,7 +12,7 @@ namespace yuragi::simulators::usb {
 /// A device for tests of what carries devices, with one of everything: interface 0 is HID and says an 8-byte report
 /// every 10 ms, `W`, its number (u32) and the wind (u16 cm/s, u8 deg/2), and keeps a feature report; interface 1 sends
 /// back in bulk what it got in bulk, each bit turned over, and answers the vendor request 0x42.
-class EchoDevice final : public UsbDevice {
+class EchoDevice final : public Device {
  public:
   static constexpr std::uint16_t kVendor = 0x1209;
   static constexpr std::uint16_t kProduct = 0x57D1;
@@ -33,7 +33,7 @@ class EchoDevice final : public UsbDevice {
     descriptors_.strings = {"Yuragi", "Echo", "E0001"};
   }
 
-  const UsbDescriptors& descriptors() const override { return descriptors_; }
+  const Descriptors& descriptors() const override { return descriptors_; }
   std::span<const core::FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {core::FaultKind::kGarbage};
     return kKnown;
@@ -45,35 +45,35 @@ class EchoDevice final : public UsbDevice {
     fault_ = fault;
   }
 
-  std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) override {
+  std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> data) override {
     if (setup.request_type == 0xA1 && setup.request == 1) return feature_;
     if (setup.request_type == 0x21 && setup.request == 9) {
       feature_.assign(data.begin(), data.end());
-      return UsbBytes{};
+      return Bytes{};
     }
-    if (setup.request_type == 0xC0 && setup.request == 0x42) return UsbBytes{'V', 'E', 'N', 'D', 'O', 'R'};
+    if (setup.request_type == 0xC0 && setup.request == 0x42) return Bytes{'V', 'E', 'N', 'D', 'O', 'R'};
     return std::nullopt;
   }
 
-  std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t /*max_size*/) override {
+  std::optional<Bytes> in(std::uint8_t endpoint, std::size_t /*max_size*/) override {
     if (endpoint == 2) {
       if (bulk_.empty()) return std::nullopt;
       return std::exchange(bulk_, {});
     }
     if (time_s_ < next_report_s_) return std::nullopt;
     next_report_s_ = time_s_ + kReportEvery_s;
-    if (fault_ == core::FaultKind::kGarbage) return UsbBytes(kReportSize, 0xA5);
+    if (fault_ == core::FaultKind::kGarbage) return Bytes(kReportSize, 0xA5);
     ++reports_;
     const auto speed_cm_s = static_cast<std::uint16_t>(100.0 * wind_.speed_m_s);
     const auto byte = [](std::uint32_t value) { return static_cast<std::uint8_t>(value); };
-    return UsbBytes{'W',
-                    byte(reports_),
-                    byte(reports_ >> 8U),
-                    byte(reports_ >> 16U),
-                    byte(reports_ >> 24U),
-                    byte(speed_cm_s),
-                    byte(speed_cm_s >> 8U),
-                    static_cast<std::uint8_t>(wind_.direction_deg / 2.0)};
+    return Bytes{'W',
+                 byte(reports_),
+                 byte(reports_ >> 8U),
+                 byte(reports_ >> 16U),
+                 byte(reports_ >> 24U),
+                 byte(speed_cm_s),
+                 byte(speed_cm_s >> 8U),
+                 static_cast<std::uint8_t>(wind_.direction_deg / 2.0)};
   }
 
   bool out(std::uint8_t /*endpoint*/, std::span<const std::uint8_t> data) override {
@@ -83,9 +83,9 @@ class EchoDevice final : public UsbDevice {
   }
 
  private:
-  UsbDescriptors descriptors_;
-  UsbBytes feature_ = {'F', 'E', 'A', 'T', 'U', 'R', 'E', '!'};
-  UsbBytes bulk_;
+  Descriptors descriptors_;
+  Bytes feature_ = {'F', 'E', 'A', 'T', 'U', 'R', 'E', '!'};
+  Bytes bulk_;
   double time_s_ = 0.0;
   double next_report_s_ = 0.0;
   core::PlayedMoment wind_;

@@ -16,16 +16,16 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr UsbSetup kSetOutputReport = {0x21, 0x09, 0x0200, 0, 8};
-constexpr UsbSetup kGetInputReport1 = {0xA1, 0x01, 0x0101, 0, 10};
+constexpr SetupPacket kSetOutputReport = {0x21, 0x09, 0x0200, 0, 8};
+constexpr SetupPacket kGetInputReport1 = {0xA1, 0x01, 0x0101, 0, 10};
 
 /// A station and the host that polls it every 10 ms.
 class HostOf {
  public:
   explicit HostOf(std::string_view name, double pace = 1.0) : device_(make_hid_station(name, pace)) {}
-  explicit HostOf(std::unique_ptr<UsbDevice> device) : device_(std::move(device)) {}
+  explicit HostOf(std::unique_ptr<Device> device) : device_(std::move(device)) {}
 
-  UsbDevice& device() { return *device_; }
+  Device& device() { return *device_; }
   core::PlayedMoment wind = {8.6, 225.0};
   std::optional<core::FaultKind> fault;
 
@@ -36,8 +36,8 @@ class HostOf {
   }
 
   /// The reports of the next `duration_s`.
-  std::vector<UsbBytes> listen(double duration_s) {
-    std::vector<UsbBytes> reports;
+  std::vector<Bytes> listen(double duration_s) {
+    std::vector<Bytes> reports;
     for (const double end_s = now_s_ + duration_s; now_s_ < end_s; now_s_ += 0.01) {
       device_->advance(now_s_, wind, fault);
       while (auto report = device_->in(1, 64)) reports.push_back(*report);
@@ -45,21 +45,20 @@ class HostOf {
     return reports;
   }
 
-  std::optional<UsbBytes> set_report(const UsbBytes& report) { return device_->control(kSetOutputReport, report); }
+  std::optional<Bytes> set_report(const Bytes& report) { return device_->control(kSetOutputReport, report); }
 
  private:
-  std::unique_ptr<UsbDevice> device_;
+  std::unique_ptr<Device> device_;
   double now_s_ = 0.0;
 };
 
-UsbBytes stream_of(const std::vector<UsbBytes>& reports) {
-  UsbBytes stream;
-  for (const UsbBytes& report : reports)
-    stream.insert(stream.end(), report.begin() + 1, report.begin() + 1 + report[0]);
+Bytes stream_of(const std::vector<Bytes>& reports) {
+  Bytes stream;
+  for (const Bytes& report : reports) stream.insert(stream.end(), report.begin() + 1, report.begin() + 1 + report[0]);
   return stream;
 }
 
-bool holds(const UsbBytes& stream, const UsbBytes& wanted) {
+bool holds(const Bytes& stream, const Bytes& wanted) {
   return std::search(stream.begin(), stream.end(), wanted.begin(), wanted.end()) != stream.end();
 }
 
@@ -69,7 +68,7 @@ class EveryHidStation : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(EveryHidStation, ShowsDescriptorsThatAreInThemselvesConsistent) {
   const auto device = make_hid_station(GetParam());
-  const UsbDescriptors& shown = device->descriptors();
+  const Descriptors& shown = device->descriptors();
   ASSERT_EQ(shown.device.size(), 18U);
   EXPECT_EQ(shown.device[0], 18);
   EXPECT_EQ(shown.strings.size(), 2U);
@@ -98,25 +97,25 @@ TEST_P(EveryHidStation, OutlivesAHostileHost) {
   const auto device = make_hid_station(GetParam());
   std::mt19937_64 random(5);
   for (int round = 0; round < 5000; ++round) {
-    UsbBytes data(random() % 70);
+    Bytes data(random() % 70);
     std::ranges::generate(data, [&random] { return static_cast<std::uint8_t>(random()); });
-    const UsbSetup setup = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random() % 12),
-                            static_cast<std::uint16_t>(random()), static_cast<std::uint16_t>(random()),
-                            static_cast<std::uint16_t>(random() % 80)};
+    const SetupPacket setup = {static_cast<std::uint8_t>(random()), static_cast<std::uint8_t>(random() % 12),
+                               static_cast<std::uint16_t>(random()), static_cast<std::uint16_t>(random()),
+                               static_cast<std::uint16_t>(random() % 80)};
     device->advance(0.01 * round, {10.0, 359.9}, std::nullopt);
     const auto answer = device->control(setup, data);
-    EXPECT_LE(answer.value_or(UsbBytes{}).size(), setup.length);
+    EXPECT_LE(answer.value_or(Bytes{}).size(), setup.length);
     device->out(static_cast<std::uint8_t>(random() % 3), data);
     device->control(kSetOutputReport, data);
     const auto report = device->in(static_cast<std::uint8_t>(random() % 3), 8);
-    EXPECT_LE(report.value_or(UsbBytes{}).size(), 8U);
+    EXPECT_LE(report.value_or(Bytes{}).size(), 8U);
   }
 }
 
 TEST_P(EveryHidStation, AcceptsWhatEveryHostAsksAndRefusesWhatNoneDoes) {
   const auto device = make_hid_station(GetParam());
   device->advance(0.0, {}, std::nullopt);
-  EXPECT_EQ(device->control({0x21, 0x0A, 0, 0, 0}, {}), UsbBytes{}) << "SET_IDLE, which Linux sends to each HID device";
+  EXPECT_EQ(device->control({0x21, 0x0A, 0, 0, 0}, {}), Bytes{}) << "SET_IDLE, which Linux sends to each HID device";
   EXPECT_EQ(device->control({0xC0, 0x20, 0, 0, 4}, {}), std::nullopt) << "a vendor's request of another device";
   EXPECT_EQ(device->in(2, 8), std::nullopt);
 }
@@ -135,7 +134,7 @@ TEST(HidStationFactory, RefusesANameThatItDoesNotKnow) {
 
 // --- WMR100
 
-const UsbBytes kWmr100StartReport = {0x20, 0x00, 0x08, 0x01, 0, 0, 0, 0};
+const Bytes kWmr100StartReport = {0x20, 0x00, 0x08, 0x01, 0, 0, 0, 0};
 
 TEST(SimulatedWmr100, SpeaksAfterTheStartReportOnly) {
   HostOf host("wmr100");
@@ -143,7 +142,7 @@ TEST(SimulatedWmr100, SpeaksAfterTheStartReportOnly) {
   EXPECT_TRUE(host.set_report(kWmr100StartReport).has_value());
   const auto reports = host.listen(60.0);
   ASSERT_FALSE(reports.empty());
-  for (const UsbBytes& report : reports) {
+  for (const Bytes& report : reports) {
     ASSERT_EQ(report.size(), 8U);
     EXPECT_GE(report[0], 1);
     EXPECT_LE(report[0], 7);
@@ -156,8 +155,8 @@ TEST(SimulatedWmr100, SendsTheWindEvery14SecondsBetweenTwoFf) {
   host.set_report(kWmr100StartReport);
   const auto reports = host.listen(140.0);
   // 225 degrees, 4.6 m/s twice: 00 48 0a 0c, 2e, e0 02, and the sum.
-  const UsbBytes frame = {0xFF, 0xFF, 0x00, 0x48, 0x0A, 0x0C, 0x2E, 0xE0, 0x02, 0x00, 0x20, 0x8E, 0x01};
-  const UsbBytes stream = stream_of(reports);
+  const Bytes frame = {0xFF, 0xFF, 0x00, 0x48, 0x0A, 0x0C, 0x2E, 0xE0, 0x02, 0x00, 0x20, 0x8E, 0x01};
+  const Bytes stream = stream_of(reports);
   EXPECT_TRUE(holds(stream, frame));
   int winds = 0;
   for (std::size_t i = 0; i + 1 < stream.size(); ++i) winds += stream[i] == 0x00 && stream[i + 1] == 0x48;
@@ -168,7 +167,7 @@ TEST(SimulatedWmr100, SpoilsItsFramesAsItIsTold) {
   HostOf host("wmr100");
   host.wind = {4.6, 225.0};
   host.set_report(kWmr100StartReport);
-  const UsbBytes whole = {0x2E, 0xE0, 0x02, 0x00, 0x20, 0x8E, 0x01};
+  const Bytes whole = {0x2E, 0xE0, 0x02, 0x00, 0x20, 0x8E, 0x01};
   const auto with = [&](core::FaultKind fault) {
     host.suffer(fault);
     return stream_of(host.listen(70.0));
@@ -183,11 +182,11 @@ TEST(SimulatedWmr100, SpoilsItsFramesAsItIsTold) {
 
 // --- WMR300
 
-const UsbBytes kWmr300HeartbeatPacket = {0xA6, 0x91, 0xCA, 0x45, 0x52};
-const UsbBytes kWmr300BeginPacket = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
+const Bytes kWmr300HeartbeatPacket = {0xA6, 0x91, 0xCA, 0x45, 0x52};
+const Bytes kWmr300BeginPacket = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
 
-int winds_in(const std::vector<UsbBytes>& reports) {
-  return static_cast<int>(std::ranges::count_if(reports, [](const UsbBytes& report) { return report[0] == 0xD4; }));
+int winds_in(const std::vector<Bytes>& reports) {
+  return static_cast<int>(std::ranges::count_if(reports, [](const Bytes& report) { return report[0] == 0xD4; }));
 }
 
 TEST(SimulatedWmr300, AnswersTheHeartbeatAndSendsTheWindEvery2750Milliseconds) {
@@ -200,14 +199,14 @@ TEST(SimulatedWmr300, AnswersTheHeartbeatAndSendsTheWindEvery2750Milliseconds) {
   EXPECT_TRUE(host.device().out(1, kWmr300BeginPacket));
   const auto reports = host.listen(27.5);
   ASSERT_FALSE(reports.empty());
-  EXPECT_THAT(UsbBytes(reports[0].begin(), reports[0].begin() + 6), ElementsAre('W', 'M', 'R', '3', '0', '0'));
-  EXPECT_THAT(UsbBytes(reports[1].begin(), reports[1].begin() + 4), ElementsAre('A', 'C', 'K', 0x73));
+  EXPECT_THAT(Bytes(reports[0].begin(), reports[0].begin() + 6), ElementsAre('W', 'M', 'R', '3', '0', '0'));
+  EXPECT_THAT(Bytes(reports[1].begin(), reports[1].begin() + 4), ElementsAre('A', 'C', 'K', 0x73));
   EXPECT_EQ(winds_in(reports), 10);
 
-  const auto wind = std::ranges::find_if(reports, [](const UsbBytes& report) { return report[0] == 0xD4; });
+  const auto wind = std::ranges::find_if(reports, [](const Bytes& report) { return report[0] == 0xD4; });
   ASSERT_EQ(wind->size(), 64U);
   EXPECT_EQ((*wind)[1], 54);
-  EXPECT_THAT(UsbBytes(wind->begin() + 12, wind->begin() + 16), ElementsAre(0x00, 0x1D, 0x00, 0x0D));
+  EXPECT_THAT(Bytes(wind->begin() + 12, wind->begin() + 16), ElementsAre(0x00, 0x1D, 0x00, 0x0D));
   const int sum = std::accumulate(wind->begin(), wind->begin() + 52, 0);
   EXPECT_EQ((*wind)[52] * 256 + (*wind)[53], sum);
 }
@@ -218,7 +217,7 @@ TEST(SimulatedWmr300, StopsAHundredSecondsAfterTheLastWordOfTheHost) {
   host.device().out(1, kWmr300HeartbeatPacket);
   host.device().out(1, kWmr300BeginPacket);
   EXPECT_GT(winds_in(host.listen(95.0)), 30);
-  host.device().out(1, UsbBytes{'A', 'C', 'K', 0xD4, 1, 0});
+  host.device().out(1, Bytes{'A', 'C', 'K', 0xD4, 1, 0});
   EXPECT_GT(winds_in(host.listen(95.0)), 30) << "an acknowledgement keeps it talking";
   host.listen(10.0);
   EXPECT_EQ(winds_in(host.listen(60.0)), 0);
@@ -226,16 +225,16 @@ TEST(SimulatedWmr300, StopsAHundredSecondsAfterTheLastWordOfTheHost) {
 
 // --- Fine Offset
 
-UsbBytes read_request(std::uint16_t address) {
+Bytes read_request(std::uint16_t address) {
   const auto high = static_cast<std::uint8_t>(address >> 8U);
   const auto low = static_cast<std::uint8_t>(address & 0xFFU);
   return {0xA1, high, low, 0x20, 0xA1, high, low, 0x20};
 }
 
-UsbBytes read_memory(HostOf& host, std::uint16_t address, double wait_s = 0.2) {
+Bytes read_memory(HostOf& host, std::uint16_t address, double wait_s = 0.2) {
   host.set_report(read_request(address));
-  UsbBytes block;
-  for (const UsbBytes& report : host.listen(wait_s)) block.insert(block.end(), report.begin(), report.end());
+  Bytes block;
+  for (const Bytes& report : host.listen(wait_s)) block.insert(block.end(), report.begin(), report.end());
   return block;
 }
 
@@ -243,12 +242,12 @@ TEST(SimulatedFineOffset, KeepsTheWindInTheCurrentRecord) {
   HostOf host("fineoffset");
   host.wind = {25.7, 337.5};
   host.listen(20.0);
-  const UsbBytes fixed = read_memory(host, 0);
+  const Bytes fixed = read_memory(host, 0);
   ASSERT_EQ(fixed.size(), 32U);
-  EXPECT_THAT(UsbBytes(fixed.begin(), fixed.begin() + 2), ElementsAre(0x55, 0xAA));
-  EXPECT_THAT(UsbBytes(fixed.begin() + 30, fixed.end()), ElementsAre(0x00, 0x01));
-  const UsbBytes record = read_memory(host, 0x100);
-  EXPECT_THAT(UsbBytes(record.begin() + 9, record.begin() + 13), ElementsAre(0x01, 0x01, 0x11, 15));
+  EXPECT_THAT(Bytes(fixed.begin(), fixed.begin() + 2), ElementsAre(0x55, 0xAA));
+  EXPECT_THAT(Bytes(fixed.begin() + 30, fixed.end()), ElementsAre(0x00, 0x01));
+  const Bytes record = read_memory(host, 0x100);
+  EXPECT_THAT(Bytes(record.begin() + 9, record.begin() + 13), ElementsAre(0x01, 0x01, 0x11, 15));
 }
 
 TEST(SimulatedFineOffset, WritesEvery48SecondsAndGoesOnEveryFewMinutes) {
@@ -278,7 +277,7 @@ TEST(SimulatedFineOffset, CanBeCaughtInTheMiddleOfItsWriting) {
   host.wind = {30.0, 270.0};
   bool was_torn = false;
   for (int i = 0; i < 40; ++i) {
-    const UsbBytes record = read_memory(host, 0x100, 0.07);
+    const Bytes record = read_memory(host, 0x100, 0.07);
     was_torn = was_torn || (record[9] == (300 & 0xFF) && record[12] == 0);
   }
   EXPECT_TRUE(was_torn) << "the new speed with the old direction";
@@ -301,7 +300,7 @@ TEST(SimulatedFineOffset, WritesAByteAndSaysSo) {
   HostOf host("fineoffset");
   host.listen(10.0);
   host.set_report({0xA2, 0x00, 0x1A, 0x20, 0xA2, 0xAA, 0x00, 0x20});
-  EXPECT_THAT(host.listen(0.2), ElementsAre(UsbBytes(8, 0xA5)));
+  EXPECT_THAT(host.listen(0.2), ElementsAre(Bytes(8, 0xA5)));
   EXPECT_EQ(read_memory(host, 0)[0x1A], 0xAA);
 }
 
@@ -357,7 +356,7 @@ TEST(SimulatedAcurite, FailsAsItIsTold) {
 
 // --- TE923
 
-const UsbBytes kTe923Request = {0x05, 0xAF, 0x01, 0x00, 0x02, 0xAC, 0x00, 0x00};
+const Bytes kTe923Request = {0x05, 0xAF, 0x01, 0x00, 0x02, 0xAC, 0x00, 0x00};
 
 TEST(SimulatedTe923, AnswersWithABlockInDecimalDigitsOfMilesAnHour) {
   HostOf host("te923");
@@ -366,16 +365,16 @@ TEST(SimulatedTe923, AnswersWithABlockInDecimalDigitsOfMilesAnHour) {
   host.set_report(kTe923Request);
   const auto reports = host.listen(0.5);
   ASSERT_EQ(reports.size(), 5U);
-  const UsbBytes block = stream_of(reports);
+  const Bytes block = stream_of(reports);
   ASSERT_EQ(block.size(), 34U);
   EXPECT_EQ(block[0], 0x5A);
-  EXPECT_THAT(UsbBytes(block.begin() + 26, block.begin() + 31), ElementsAre(0x87, 0x00, 0x87, 0x00, 12));
+  EXPECT_THAT(Bytes(block.begin() + 26, block.begin() + 31), ElementsAre(0x87, 0x00, 0x87, 0x00, 12));
   EXPECT_EQ(std::accumulate(block.begin(), block.end(), 0, [](int all, int byte) { return all ^ byte; }), 0);
 }
 
 TEST(SimulatedTe923, DoesNotAnswerARequestWithAWrongCheckByte) {
   HostOf host("te923");
-  UsbBytes request = kTe923Request;
+  Bytes request = kTe923Request;
   request[5] ^= 1U;
   host.set_report(request);
   EXPECT_TRUE(host.listen(1.0).empty());
@@ -392,7 +391,7 @@ TEST(SimulatedTe923, FailsAsItIsTold) {
   EXPECT_EQ(with(core::FaultKind::kPartial, 1.0).size(), 17U);
   EXPECT_LT(with(core::FaultKind::kSplit, 0.5).size(), 34U);
   EXPECT_TRUE(with(core::FaultKind::kLate, 5.0).empty());
-  const UsbBytes bad = with(core::FaultKind::kBadChecksum, 1.0);
+  const Bytes bad = with(core::FaultKind::kBadChecksum, 1.0);
   EXPECT_NE(std::accumulate(bad.begin(), bad.end(), 0, [](int all, int byte) { return all ^ byte; }), 0);
 }
 

@@ -23,12 +23,12 @@ inline core::MeasuredWind steady_wind(double speed_m_s, double direction_deg) {
   return core::MeasuredWind(std::make_unique<SteadyWind>(core::PlayedMoment{speed_m_s, direction_deg}));
 }
 
-inline std::unique_ptr<UsbPort> echo_port() {
-  return std::make_unique<UsbPort>(std::make_unique<EchoDevice>(), steady_wind(7.5, 240.0));
+inline std::unique_ptr<Port> echo_port() {
+  return std::make_unique<Port>(std::make_unique<EchoDevice>(), steady_wind(7.5, 240.0));
 }
 
-inline std::vector<std::unique_ptr<UsbPort>> echo_ports(std::size_t count) {
-  std::vector<std::unique_ptr<UsbPort>> ports;
+inline std::vector<std::unique_ptr<Port>> echo_ports(std::size_t count) {
+  std::vector<std::unique_ptr<Port>> ports;
   for (std::size_t i = 0; i < count; ++i) ports.push_back(echo_port());
   return ports;
 }

@@ -13,13 +13,13 @@ using testing::Contains;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-UsbTransfer in_transfer(std::uint64_t id, std::uint8_t endpoint, std::size_t max_size = 64) {
+Transfer in_transfer(std::uint64_t id, std::uint8_t endpoint, std::size_t max_size = 64) {
   return {.id = id, .endpoint = endpoint, .is_to_host = true, .setup = {}, .data = {}, .max_size = max_size};
 }
-UsbTransfer out_transfer(std::uint64_t id, UsbBytes data) {
+Transfer out_transfer(std::uint64_t id, Bytes data) {
   return {.id = id, .endpoint = 2, .is_to_host = false, .setup = {}, .data = std::move(data), .max_size = 0};
 }
-UsbTransfer control_transfer(std::uint64_t id, const UsbSetup& setup, UsbBytes data = {}) {
+Transfer control_transfer(std::uint64_t id, const SetupPacket& setup, Bytes data = {}) {
   return {.id = id,
           .endpoint = 0,
           .is_to_host = setup.is_to_host(),
@@ -28,14 +28,14 @@ UsbTransfer control_transfer(std::uint64_t id, const UsbSetup& setup, UsbBytes d
           .max_size = 0};
 }
 
-constexpr UsbSetup kVendorRequest = {0xC0, 0x42, 0, 0, 8};
-constexpr UsbSetup kGetDeviceDescriptor = {0x80, 6, 0x0100, 0, 18};
-constexpr UsbSetup kSetFeature = {0x21, 9, 0x0300, 0, 8};
+constexpr SetupPacket kVendorRequest = {0xC0, 0x42, 0, 0, 8};
+constexpr SetupPacket kGetDeviceDescriptor = {0x80, 6, 0x0100, 0, 18};
+constexpr SetupPacket kSetFeature = {0x21, 9, 0x0300, 0, 8};
 
 class UsbPortTest : public testing::Test {
  protected:
   UsbPortTest() { port_->advance(0.0, std::nullopt); }
-  std::unique_ptr<UsbPort> port_ = echo_port();
+  std::unique_ptr<Port> port_ = echo_port();
 };
 
 TEST_F(UsbPortTest, AReadWaitsUntilTheDeviceHasSomethingToSay) {
@@ -65,7 +65,7 @@ TEST_F(UsbPortTest, OneEndPointThatWaitsKeepsNoOtherWaiting) {
   EXPECT_THAT(port_->take_outcomes(), SizeIs(1)) << "what was sent";
   const auto echo = port_->take_outcomes();
   ASSERT_THAT(echo, SizeIs(1));
-  EXPECT_EQ(echo[0].data, UsbBytes{0xF0});
+  EXPECT_EQ(echo[0].data, Bytes{0xF0});
 }
 
 TEST_F(UsbPortTest, AWaitingTransferCanBeCancelledOnce) {
@@ -82,7 +82,7 @@ TEST_F(UsbPortTest, RefusalsAreTold) {
   port_->submit(control_transfer(3, {0xC0, 0x43, 0, 0, 8}));
   const auto outcomes = port_->take_outcomes();
   ASSERT_THAT(outcomes, SizeIs(3));
-  for (const UsbOutcome& outcome : outcomes) {
+  for (const Outcome& outcome : outcomes) {
     EXPECT_TRUE(outcome.is_refused) << outcome.id;
     EXPECT_EQ(outcome.size, 0U);
   }
@@ -96,13 +96,13 @@ TEST_F(UsbPortTest, ASilentDeviceHearsAndSaysOnlyWhatItIs) {
   port_->submit(control_transfer(4, kVendorRequest));
   port_->submit(out_transfer(5, {1, 2, 3}));
   std::vector<std::uint64_t> ended;
-  for (const UsbOutcome& outcome : port_->take_outcomes()) ended.push_back(outcome.id);
+  for (const Outcome& outcome : port_->take_outcomes()) ended.push_back(outcome.id);
   EXPECT_THAT(ended, testing::ElementsAre(2, 3, 5));
 
   port_->advance(2.0, std::nullopt);
   port_->submit(in_transfer(6, 2));
   ended.clear();
-  for (const UsbOutcome& outcome : port_->take_outcomes()) ended.push_back(outcome.id);
+  for (const Outcome& outcome : port_->take_outcomes()) ended.push_back(outcome.id);
   EXPECT_THAT(ended, testing::ElementsAre(1, 4)) << "what it would have said in its silence is lost";
 }
 
@@ -124,7 +124,7 @@ TEST_F(UsbPortTest, ItsDevicesFaultsAndItsOwnAreKnown) {
   }
   port_->advance(1.0, core::FaultKind::kGarbage);
   port_->submit(in_transfer(1, 1));
-  EXPECT_EQ(port_->take_outcomes().at(0).data, UsbBytes(EchoDevice::kReportSize, 0xA5));
+  EXPECT_EQ(port_->take_outcomes().at(0).data, Bytes(EchoDevice::kReportSize, 0xA5));
   port_->advance(2.0, core::FaultKind::kException);  // of which the device knows nothing
   port_->submit(in_transfer(2, 1));
   EXPECT_EQ(port_->take_outcomes().at(0).data.front(), 'W');

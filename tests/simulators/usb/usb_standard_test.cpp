@@ -15,34 +15,34 @@ using testing::ElementsAre;
 
 class UsbStandardTest : public testing::Test {
  protected:
-  std::optional<UsbBytes> get(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
-                              std::uint16_t length) {
+  std::optional<Bytes> get(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,
+                           std::uint16_t length) {
     return pipe_.control({type, request, value, index, length}, {});
   }
-  std::optional<UsbBytes> set(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index = 0) {
+  std::optional<Bytes> set(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index = 0) {
     return pipe_.control({type, request, value, index, 0}, {});
   }
 
   EchoDevice device_;
-  UsbControlPipe pipe_{device_};
+  ControlPipe pipe_{device_};
 };
 
 TEST_F(UsbStandardTest, TellsEachDescriptor) {
   EXPECT_EQ(get(0x80, 6, 0x0100, 0, 64), device_.descriptors().device);
   EXPECT_EQ(get(0x80, 6, 0x0200, 0, 4096), device_.descriptors().configuration);
   EXPECT_EQ(get(0x81, 6, 0x2200, 0, 4096), device_.descriptors().hid_report);
-  EXPECT_EQ(get(0x81, 6, 0x2100, 0, 64), (UsbBytes{9, 0x21, 0x11, 0x01, 0, 1, 0x22, 27, 0}));
+  EXPECT_EQ(get(0x81, 6, 0x2100, 0, 64), (Bytes{9, 0x21, 0x11, 0x01, 0, 1, 0x22, 27, 0}));
 }
 
 TEST_F(UsbStandardTest, TellsOnlyAsMuchAsIsAskedFor) {
   EXPECT_EQ(get(0x80, 6, 0x0100, 0, 8)->size(), 8U);
   EXPECT_EQ(get(0x80, 6, 0x0200, 0, 9)->size(), 9U);
-  EXPECT_EQ(get(0xC0, 0x42, 0, 0, 3), (UsbBytes{'V', 'E', 'N'}));
+  EXPECT_EQ(get(0xC0, 0x42, 0, 0, 3), (Bytes{'V', 'E', 'N'}));
 }
 
 TEST_F(UsbStandardTest, TellsStringsInTwoBytesACharacter) {
-  EXPECT_EQ(get(0x80, 6, 0x0300, 0, 255), (UsbBytes{4, 3, 0x09, 0x04}));
-  EXPECT_EQ(get(0x80, 6, 0x0302, 0x0409, 255), (UsbBytes{10, 3, 'E', 0, 'c', 0, 'h', 0, 'o', 0}));
+  EXPECT_EQ(get(0x80, 6, 0x0300, 0, 255), (Bytes{4, 3, 0x09, 0x04}));
+  EXPECT_EQ(get(0x80, 6, 0x0302, 0x0409, 255), (Bytes{10, 3, 'E', 0, 'c', 0, 'h', 0, 'o', 0}));
 }
 
 TEST_F(UsbStandardTest, RefusesWhatTheDeviceHasNot) {
@@ -60,14 +60,14 @@ TEST_F(UsbStandardTest, IsConfiguredByTheHost) {
   EXPECT_TRUE(set(0x00, 5, 7)) << "an address";
   EXPECT_TRUE(set(0x00, 9, 1));
   EXPECT_EQ(pipe_.configuration(), 1);
-  EXPECT_EQ(get(0x80, 8, 0, 0, 1), UsbBytes{1});
+  EXPECT_EQ(get(0x80, 8, 0, 0, 1), Bytes{1});
   EXPECT_TRUE(set(0x01, 11, 0));
   EXPECT_TRUE(set(0x02, 1, 0, 0x81)) << "the halt of an end point is cleared";
-  EXPECT_EQ(get(0x82, 0, 0, 0x81, 2), (UsbBytes{0, 0}));
+  EXPECT_EQ(get(0x82, 0, 0, 0x81, 2), (Bytes{0, 0}));
 }
 
 TEST_F(UsbStandardTest, LeavesClassAndVendorRequestsToTheDevice) {
-  const UsbBytes feature = {1, 2, 3, 4, 5, 6, 7, 8};
+  const Bytes feature = {1, 2, 3, 4, 5, 6, 7, 8};
   EXPECT_TRUE(pipe_.control({0x21, 9, 0x0300, 0, 8}, feature));
   EXPECT_EQ(get(0xA1, 1, 0x0300, 0, 8), feature);
 }
@@ -76,15 +76,15 @@ TEST_F(UsbStandardTest, SurvivesAnyRequest) {
   std::mt19937 random(1);
   const auto any = [&random] { return static_cast<std::uint16_t>(random()); };
   for (int i = 0; i < 100'000; ++i) {
-    const UsbSetup setup = {static_cast<std::uint8_t>(any()), static_cast<std::uint8_t>(any() % 16), any(), any(),
-                            any()};
-    const auto answer = pipe_.control(setup, UsbBytes(any() % 9));
-    ASSERT_LE(answer.value_or(UsbBytes{}).size(), setup.length);
+    const SetupPacket setup = {static_cast<std::uint8_t>(any()), static_cast<std::uint8_t>(any() % 16), any(), any(),
+                               any()};
+    const auto answer = pipe_.control(setup, Bytes(any() % 9));
+    ASSERT_LE(answer.value_or(Bytes{}).size(), setup.length);
   }
 }
 
 TEST(UsbSummary, ReadsTheDescriptors) {
-  const UsbSummary summary = summary_of(EchoDevice().descriptors());
+  const Summary summary = summary_of(EchoDevice().descriptors());
   EXPECT_EQ(summary.vendor_id, 0x1209);
   EXPECT_EQ(summary.product_id, 0x57D1);
   EXPECT_EQ(summary.release, 0x0100);
@@ -102,15 +102,15 @@ TEST(UsbSummary, ReadsTheDescriptors) {
 }
 
 TEST(UsbSummary, StopsWhereADescriptorMakesNoSense) {
-  UsbDescriptors cut = EchoDevice().descriptors();
+  Descriptors cut = EchoDevice().descriptors();
   for (std::size_t size = 0; size < cut.configuration.size(); ++size) {
-    UsbDescriptors shorter = cut;
+    Descriptors shorter = cut;
     shorter.configuration.resize(size);
     EXPECT_LE(summary_of(shorter).endpoints.size(), 3U);
   }
   cut.configuration[9] = 0;  // a descriptor of no length would never end
   EXPECT_TRUE(summary_of(cut).interfaces.empty());
-  EXPECT_EQ(summary_of(UsbDescriptors{}).vendor_id, 0);
+  EXPECT_EQ(summary_of(Descriptors{}).vendor_id, 0);
 }
 
 }  // namespace

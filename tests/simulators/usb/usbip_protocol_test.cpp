@@ -15,7 +15,7 @@ UsbipOffer echo_offer() {
 }
 
 template <class Message>
-Message only_message(UsbipPhase phase, const UsbBytes& bytes) {
+Message only_message(UsbipPhase phase, const Bytes& bytes) {
   const auto taken = take_usbip_message(phase, bytes);
   EXPECT_TRUE(taken.has_value());
   EXPECT_EQ(taken->size, bytes.size());
@@ -31,8 +31,8 @@ TEST(UsbipProtocol, ReadsTheTwoQuestions) {
 
 TEST(UsbipProtocol, ReadsTransfers) {
   // The control transfer that the kernel's documentation shows: the first 64 bytes of the device descriptor.
-  const UsbBytes bytes = {0, 0, 0, 1,    0, 0, 0x0D, 0x05, 0, 1, 0, 0x0F, 0, 0, 0, 1, 0,    0, 0, 0, 0, 0, 2,    0,
-                          0, 0, 0, 0x40, 0, 0, 0,    0,    0, 0, 0, 0,    0, 0, 0, 0, 0x80, 6, 0, 1, 0, 0, 0x40, 0};
+  const Bytes bytes = {0, 0, 0, 1,    0, 0, 0x0D, 0x05, 0, 1, 0, 0x0F, 0, 0, 0, 1, 0,    0, 0, 0, 0, 0, 2,    0,
+                       0, 0, 0, 0x40, 0, 0, 0,    0,    0, 0, 0, 0,    0, 0, 0, 0, 0x80, 6, 0, 1, 0, 0, 0x40, 0};
   const auto submit = only_message<UsbipSubmit>(UsbipPhase::kTransfers, bytes);
   EXPECT_EQ(submit.number, 0x0D05U);
   EXPECT_TRUE(submit.is_to_host);
@@ -45,7 +45,7 @@ TEST(UsbipProtocol, ReadsTransfers) {
 
   const auto sent = only_message<UsbipSubmit>(UsbipPhase::kTransfers, usbip_submit_out(9, 2, {1, 2, 3}));
   EXPECT_FALSE(sent.is_to_host);
-  EXPECT_EQ(sent.data, (UsbBytes{1, 2, 3}));
+  EXPECT_EQ(sent.data, (Bytes{1, 2, 3}));
 
   const auto unlink = only_message<UsbipUnlink>(UsbipPhase::kTransfers, usbip_unlink(10, 9));
   EXPECT_EQ(unlink.number, 10U);
@@ -53,7 +53,7 @@ TEST(UsbipProtocol, ReadsTransfers) {
 }
 
 TEST(UsbipProtocol, WaitsForTheRestOfAMessageWhereverItIsCut) {
-  const auto check = [](UsbipPhase phase, const UsbBytes& whole) {
+  const auto check = [](UsbipPhase phase, const Bytes& whole) {
     for (std::size_t size = 0; size < whole.size(); ++size) {
       const auto taken = take_usbip_message(phase, std::span(whole).first(size));
       ASSERT_TRUE(taken.has_value());
@@ -62,17 +62,17 @@ TEST(UsbipProtocol, WaitsForTheRestOfAMessageWhereverItIsCut) {
     }
   };
   check(UsbipPhase::kRequests, usbip_request_import("1-1"));
-  check(UsbipPhase::kTransfers, usbip_submit_out(1, 2, UsbBytes(64)));
+  check(UsbipPhase::kTransfers, usbip_submit_out(1, 2, Bytes(64)));
 }
 
 TEST(UsbipProtocol, RefusesWhatCannotBeServed) {
-  const auto refuses = [](UsbipPhase phase, UsbBytes bytes, std::size_t at, std::uint8_t value) {
+  const auto refuses = [](UsbipPhase phase, Bytes bytes, std::size_t at, std::uint8_t value) {
     bytes.at(at) = value;
     return !take_usbip_message(phase, bytes).has_value();
   };
   EXPECT_TRUE(refuses(UsbipPhase::kRequests, kUsbipRequestList, 1, 0x06)) << "another version";
   EXPECT_TRUE(refuses(UsbipPhase::kRequests, kUsbipRequestList, 3, 0x07)) << "another question";
-  const UsbBytes in = usbip_submit_in(1, 1, 8);
+  const Bytes in = usbip_submit_in(1, 1, 8);
   EXPECT_TRUE(refuses(UsbipPhase::kTransfers, in, 3, 3)) << "another command";
   EXPECT_TRUE(refuses(UsbipPhase::kTransfers, in, 19, 16)) << "an end point above 15";
   EXPECT_TRUE(refuses(UsbipPhase::kTransfers, in, 35, 4)) << "isochronous packets";
@@ -82,9 +82,9 @@ TEST(UsbipProtocol, RefusesWhatCannotBeServed) {
 }
 
 TEST(UsbipProtocol, ListsDevicesAsTheKernelReadsThem) {
-  const UsbBytes reply = usbip_list_reply(std::array{echo_offer(), echo_offer()});
+  const Bytes reply = usbip_list_reply(std::array{echo_offer(), echo_offer()});
   EXPECT_EQ(reply.size(), 12U + 2U * (312U + 2U * 4U));
-  EXPECT_EQ((UsbBytes{reply.begin(), reply.begin() + 12}), (UsbBytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 2}));
+  EXPECT_EQ((Bytes{reply.begin(), reply.begin() + 12}), (Bytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 2}));
   const std::span record = std::span(reply).subspan(12, 312);
   EXPECT_STREQ(reinterpret_cast<const char*>(record.data() + 256), "1-1");
   EXPECT_THAT(
@@ -96,19 +96,19 @@ TEST(UsbipProtocol, ListsDevicesAsTheKernelReadsThem) {
 TEST(UsbipProtocol, AnswersAnImport) {
   const UsbipOffer offer = echo_offer();
   EXPECT_EQ(usbip_import_reply(&offer, false).size(), 8U + 312U);
-  EXPECT_EQ(usbip_import_reply(&offer, true), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 2}));
-  EXPECT_EQ(usbip_import_reply(nullptr, false), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
+  EXPECT_EQ(usbip_import_reply(&offer, true), (Bytes{1, 0x11, 0, 3, 0, 0, 0, 2}));
+  EXPECT_EQ(usbip_import_reply(nullptr, false), (Bytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
 }
 
 TEST(UsbipProtocol, AnswersTransfers) {
-  UsbBytes expected(48);
+  Bytes expected(48);
   expected[3] = 3;
   expected[7] = 5;
   expected[27] = 2;
   expected.insert(expected.end(), {0xAB, 0xCD});
-  EXPECT_EQ(usbip_submit_reply(5, kUsbipDone, 2, UsbBytes{0xAB, 0xCD}), expected);
+  EXPECT_EQ(usbip_submit_reply(5, kUsbipDone, 2, Bytes{0xAB, 0xCD}), expected);
 
-  UsbBytes unlinked(48);
+  Bytes unlinked(48);
   unlinked[3] = 4;
   unlinked[7] = 6;
   unlinked[20] = unlinked[21] = unlinked[22] = 0xFF;

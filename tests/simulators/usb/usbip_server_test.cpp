@@ -39,13 +39,13 @@ class UsbipServerTest : public testing::Test {
     server_.serve(ready, time_s_, fault);
   }
 
-  static void send_bytes(const Descriptor& client, const UsbBytes& bytes) {
+  static void send_bytes(const Descriptor& client, const Bytes& bytes) {
     EXPECT_EQ(send(client.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL), std::ssize(bytes));
   }
 
   /// Serves until so many bytes have come, or the server has closed the connection; what has come.
-  UsbBytes answer(const Descriptor& client, std::size_t size, std::optional<core::FaultKind> fault = std::nullopt) {
-    UsbBytes got;
+  Bytes answer(const Descriptor& client, std::size_t size, std::optional<core::FaultKind> fault = std::nullopt) {
+    Bytes got;
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (got.size() < size && std::chrono::steady_clock::now() < deadline) {
       serve_once(fault);
@@ -56,8 +56,8 @@ class UsbipServerTest : public testing::Test {
     }
     return got;
   }
-  UsbBytes ask(const Descriptor& client, const UsbBytes& bytes, std::size_t size,
-               std::optional<core::FaultKind> fault = std::nullopt) {
+  Bytes ask(const Descriptor& client, const Bytes& bytes, std::size_t size,
+            std::optional<core::FaultKind> fault = std::nullopt) {
     send_bytes(client, bytes);
     return answer(client, size, fault);
   }
@@ -89,7 +89,7 @@ class UsbipServerTest : public testing::Test {
 
 TEST_F(UsbipServerTest, ListsItsDevicesAndEndsTheConnection) {
   const Descriptor client = connect_client();
-  const UsbBytes list = ask(client, kUsbipRequestList, 12 + 2 * 320);
+  const Bytes list = ask(client, kUsbipRequestList, 12 + 2 * 320);
   ASSERT_EQ(list.size(), 12U + 2U * 320U);
   EXPECT_EQ(list[11], 2);
   EXPECT_TRUE(is_closed(client));
@@ -98,13 +98,13 @@ TEST_F(UsbipServerTest, ListsItsDevicesAndEndsTheConnection) {
 TEST_F(UsbipServerTest, GivesADeviceToOneHostAtATime) {
   Descriptor first = attach("1-1");
   const Descriptor second = connect_client();
-  EXPECT_EQ(ask(second, usbip_request_import("1-1"), kRefused), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 2}));
+  EXPECT_EQ(ask(second, usbip_request_import("1-1"), kRefused), (Bytes{1, 0x11, 0, 3, 0, 0, 0, 2}));
   const Descriptor other = attach("1-2");
   const Descriptor stranger = connect_client();
-  EXPECT_EQ(ask(stranger, usbip_request_import("9-9"), kRefused), (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
+  EXPECT_EQ(ask(stranger, usbip_request_import("9-9"), kRefused), (Bytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
 
   first.reset();
-  UsbBytes again;
+  Bytes again;
   for (int i = 0; i < 1000 && again.size() != kImported; ++i) {  // until the server has seen that it is gone
     const Descriptor next = connect_client();
     again = ask(next, usbip_request_import("1-1"), kRefused);
@@ -115,7 +115,7 @@ TEST_F(UsbipServerTest, GivesADeviceToOneHostAtATime) {
 
 TEST_F(UsbipServerTest, AnswersAReadWhenTheDeviceHasSomethingToSay) {
   const Descriptor host = attach();
-  const UsbBytes first = ask(host, usbip_submit_in(1, 1, 8), kReport);
+  const Bytes first = ask(host, usbip_submit_in(1, 1, 8), kReport);
   ASSERT_EQ(first.size(), kReport);
   EXPECT_EQ(first[kHead], 'W');
 
@@ -123,7 +123,7 @@ TEST_F(UsbipServerTest, AnswersAReadWhenTheDeviceHasSomethingToSay) {
   send_bytes(host, usbip_submit_in(2, 1, 8));
   EXPECT_EQ(ask(host, usbip_submit_out(3, 2, {1}), kHead)[7], 3);
   time_s_ = 0.5;
-  const UsbBytes second = answer(host, kReport);
+  const Bytes second = answer(host, kReport);
   ASSERT_EQ(second.size(), kReport);
   EXPECT_EQ(second[7], 2);
   EXPECT_EQ(second[kHead + 1], 2);
@@ -132,7 +132,7 @@ TEST_F(UsbipServerTest, AnswersAReadWhenTheDeviceHasSomethingToSay) {
 TEST_F(UsbipServerTest, UnlinksWhatWaitsAndSaysSoWhereItDoesNot) {
   const Descriptor host = attach();
   send_bytes(host, usbip_submit_in(5, 2, 64));
-  const UsbBytes unlinked = ask(host, usbip_unlink(6, 5), kHead);
+  const Bytes unlinked = ask(host, usbip_unlink(6, 5), kHead);
   ASSERT_EQ(unlinked.size(), kHead);
   EXPECT_EQ(unlinked[3], 4);
   EXPECT_EQ(unlinked[23], 0x98) << "ECONNRESET: it will have no other answer";
@@ -141,15 +141,15 @@ TEST_F(UsbipServerTest, UnlinksWhatWaitsAndSaysSoWhereItDoesNot) {
 
 TEST_F(UsbipServerTest, EchoesBulkThatComesInPieces) {
   const Descriptor host = attach();
-  const UsbBytes out = usbip_submit_out(1, 2, {0x0F, 0x33});
+  const Bytes out = usbip_submit_out(1, 2, {0x0F, 0x33});
   for (const std::uint8_t byte : out) {
     send_bytes(host, {byte});
     serve_once();
   }
-  const UsbBytes sent = answer(host, kHead);
+  const Bytes sent = answer(host, kHead);
   ASSERT_EQ(sent.size(), kHead);
   EXPECT_EQ(sent[27], 2) << "how much was sent";
-  const UsbBytes echo = ask(host, usbip_submit_in(2, 2, 64), kHead + 2);
+  const Bytes echo = ask(host, usbip_submit_in(2, 2, 64), kHead + 2);
   ASSERT_EQ(echo.size(), kHead + 2);
   EXPECT_EQ(echo[kHead], 0xF0);
   EXPECT_EQ(echo[kHead + 1], 0xCC);
@@ -166,10 +166,10 @@ TEST_F(UsbipServerTest, ADeviceIsUnpluggedAndPluggedInAgain) {
   time_s_ = 1.0;
   EXPECT_TRUE(is_closed(host, core::FaultKind::kUnplug));
   EXPECT_EQ(ask(other, usbip_request_import("1-1"), kRefused, core::FaultKind::kUnplug),
-            (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
+            (Bytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
   const Descriptor requesting = connect_client();
   EXPECT_EQ(ask(requesting, kUsbipRequestList, 12, core::FaultKind::kUnplug),
-            (UsbBytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0}));
+            (Bytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0}));
 
   time_s_ = 2.0;
   const Descriptor again = attach();
@@ -180,7 +180,7 @@ TEST_F(UsbipServerTest, ADeviceIsUnpluggedAndPluggedInAgain) {
 TEST_F(UsbipServerTest, GivesUpAHostThatTalksNonsenseAndServesTheOthers) {
   const Descriptor host = attach("1-2");
   const Descriptor hostile = connect_client();
-  send_bytes(hostile, UsbBytes(4096, 0x5A));
+  send_bytes(hostile, Bytes(4096, 0x5A));
   EXPECT_TRUE(is_closed(hostile));
   EXPECT_THAT(server_.status(), testing::HasSubstr("given up: USB/IP version 0x5a5a"));
   EXPECT_EQ(ask(host, usbip_submit_in(1, 1, 8), kReport).size(), kReport);

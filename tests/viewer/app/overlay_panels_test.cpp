@@ -65,7 +65,7 @@ class OverlayPanelsTest : public testing::Test {
     const auto has = [shown](PanelId id) { return (shown >> static_cast<unsigned>(id) & 1U) != 0; };
     OverlayFacts facts;
     facts.playback = stream::Playback::kLive;
-    facts.stream = {.state = stream::StreamState::kConnected, .text = "connected to 127.0.0.1:7410"};
+    facts.stream = {.state = stream::State::kConnected, .text = "connected to 127.0.0.1:7410"};
     facts.sensors = &sensors_;
     facts.age = "the readings in the pictures are 0.2 s old at most";
     facts.has_texts = has(PanelId::kTexts);

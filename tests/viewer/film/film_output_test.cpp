@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 class FilmOutputTest : public testing::Test {
  protected:
-  std::unique_ptr<FilmOutput> begin(const fs::path& folder) const {
+  std::unique_ptr<Output> begin(const fs::path& folder) const {
     return make_film_output(folder.string(), {.width_px = 2, .height_px = 2}, is_stopping_);
   }
-  static void write_two(FilmOutput& output) {
+  static void write_two(Output& output) {
     const std::vector<std::uint8_t> rgb(3U * 2U * 2U);
     output.write(rgb);
     output.write(rgb);

@@ -42,7 +42,7 @@ wire::Frame frame_at(double time_s) {
   return frame;
 }
 
-class ToldStream final : public FilmStream {
+class ToldStream final : public Stream {
  public:
   std::optional<wire::Message> next() override {
     if (messages.empty()) return std::nullopt;
@@ -79,7 +79,7 @@ class WatchedRenderer final : public picture::Renderer {
   picture::NullRenderer nothing_{16, 16};
 };
 
-class CountedOutput final : public FilmOutput {
+class CountedOutput final : public Output {
  public:
   void write(std::span<const std::uint8_t> rgb) override { bytes += rgb.size(); }
   void finish() override {}

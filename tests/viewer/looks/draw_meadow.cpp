@@ -95,7 +95,7 @@ ParameterValues::Map values_of(const std::string& words) {
 }
 
 std::unique_ptr<scenes::Scene> made(std::string_view kind, const ParameterValues::Map& given) {
-  for (const scenes::SceneDescription* description : scenes::scene_table()) {
+  for (const scenes::Description* description : scenes::scene_table()) {
     if (description->name != kind) continue;
     return description->make(ParameterValues::resolve(description->parameters, given).value(),
                              {.seed = 1, .gusts = answer::test_gusts()});

@@ -57,7 +57,7 @@ std::unique_ptr<scenes::Scene> made(const std::string& words) {
     }
     at = end;
   }
-  for (const scenes::SceneDescription* description : scenes::scene_table()) {
+  for (const scenes::Description* description : scenes::scene_table()) {
     if (description->name != kind) continue;
     return description->make(ParameterValues::resolve(description->parameters, given).value(), {});
   }
@@ -100,7 +100,7 @@ int draw_scenes(std::vector<std::string> words) {
   std::vector<std::string> kinds(words.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, words.size())),
                                  words.end());
   if (kinds.empty()) {
-    for (const scenes::SceneDescription* description : scenes::scene_table()) kinds.emplace_back(description->name);
+    for (const scenes::Description* description : scenes::scene_table()) kinds.emplace_back(description->name);
   }
 
   const viewer::gl::HeadlessContext context({.has_messages = true});

@@ -13,15 +13,15 @@ namespace yuragi::viewer::pace {
 namespace {
 
 constexpr double kRefresh_s = 1.0 / 60.0;
-constexpr double kHour_s = PaceKeeper::kHour_s;
-const PaceLadder kLadder(look::Quality::kAuto, kRefresh_s);
+constexpr double kHour_s = Keeper::kHour_s;
+const Ladder kLadder(look::Quality::kAuto, kRefresh_s);
 
 /// A machine that needs so long for all of a picture in quality high, of which a part is the same however little is
 /// drawn.
 struct Machine {
   double full_s;
   double fixed = 0.15;
-  double work_s(const PaceStep& step, const DrawnPart& part) const {
+  double work_s(const Step& step, const DrawnPart& part) const {
     const double quality = step.quality == look::Quality::kHigh     ? 1.0
                            : step.quality == look::Quality::kMedium ? 0.58
                                                                     : 0.35;
@@ -32,14 +32,14 @@ struct Machine {
 
 struct Change {
   double at_s;
-  PaceStep step;
+  Step step;
 };
 
 /// What it does in so long a time on a machine that may be another from moment to moment.
-std::vector<Change> run_for(PaceKeeper& keeper, double time_s, const std::function<Machine(double)>& machine_at) {
+std::vector<Change> run_for(Keeper& keeper, double time_s, const std::function<Machine(double)>& machine_at) {
   std::vector<Change> changes;
   for (double now_s = 0.0; now_s < time_s;) {
-    const PaceStep before = keeper.step();
+    const Step before = keeper.step();
     const double work_s = machine_at(now_s).work_s(before, keeper.drawn());
     const double passed_s = std::max(work_s, keeper.picture_s());
     keeper.advance(passed_s, work_s);
@@ -49,22 +49,22 @@ std::vector<Change> run_for(PaceKeeper& keeper, double time_s, const std::functi
   return changes;
 }
 
-double work_s(const PaceKeeper& keeper, const Machine& machine) {
+double work_s(const Keeper& keeper, const Machine& machine) {
   return machine.work_s(keeper.step(), keeper.step().part);
 }
 
 TEST(PaceLadderTest, GivesUpPicturesFirstThenQualityThenPixels) {
   ASSERT_EQ(kLadder.size(), 8U);
-  EXPECT_EQ(kLadder[0], (PaceStep{.quality = look::Quality::kHigh}));
-  EXPECT_EQ(kLadder[1], (PaceStep{.quality = look::Quality::kHigh, .refreshes = 2}));
-  EXPECT_EQ(kLadder[2], (PaceStep{.quality = look::Quality::kMedium, .refreshes = 2}));
-  EXPECT_EQ(kLadder[3], (PaceStep{.quality = look::Quality::kLow, .refreshes = 2}));
-  EXPECT_EQ(kLadder[7], (PaceStep{.quality = look::Quality::kLow, .part = PaceLadder::kParts[3], .refreshes = 2}));
+  EXPECT_EQ(kLadder[0], (Step{.quality = look::Quality::kHigh}));
+  EXPECT_EQ(kLadder[1], (Step{.quality = look::Quality::kHigh, .refreshes = 2}));
+  EXPECT_EQ(kLadder[2], (Step{.quality = look::Quality::kMedium, .refreshes = 2}));
+  EXPECT_EQ(kLadder[3], (Step{.quality = look::Quality::kLow, .refreshes = 2}));
+  EXPECT_EQ(kLadder[7], (Step{.quality = look::Quality::kLow, .part = Ladder::kParts[3], .refreshes = 2}));
 }
 
 TEST(PaceLadderTest, HasTheDisplaysRateOrAnEvenPartOfIt) {
   for (const double rate_hz : {24.0, 25.0, 30.0, 50.0, 60.0, 75.0, 100.0, 120.0, 144.0, 240.0, 360.0}) {
-    const PaceLadder ladder(look::Quality::kAuto, 1.0 / rate_hz);
+    const Ladder ladder(look::Quality::kAuto, 1.0 / rate_hz);
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       EXPECT_GE(1.0 / ladder.picture_s(i), 23.9) << rate_hz;
       EXPECT_GE(ladder[i].refreshes, i == 0 ? 1 : ladder[i - 1].refreshes);
@@ -73,20 +73,20 @@ TEST(PaceLadderTest, HasTheDisplaysRateOrAnEvenPartOfIt) {
     EXPECT_EQ(ladder[0].refreshes, 1);
   }
   for (const double refresh_s : {0.0, -1.0, 1e9}) {  // what a driver may say
-    EXPECT_LE(PaceLadder(look::Quality::kAuto, refresh_s).size(), 12U);
+    EXPECT_LE(Ladder(look::Quality::kAuto, refresh_s).size(), 12U);
   }
 }
 
 TEST(PaceLadderTest, AQualityThatSomebodyHasChosenStays) {
   for (const look::Quality quality : {look::Quality::kHigh, look::Quality::kMedium, look::Quality::kLow}) {
-    const PaceLadder ladder(quality, kRefresh_s);
+    const Ladder ladder(quality, kRefresh_s);
     EXPECT_EQ(ladder.size(), quality == look::Quality::kLow ? 6U : 2U);
     for (std::size_t i = 0; i < ladder.size(); ++i) EXPECT_EQ(ladder[i].quality, quality);
   }
 }
 
 TEST(PaceKeeperTest, DrawsEverythingWhereThatIsQuickEnough) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   EXPECT_TRUE(run_for(keeper, 600.0, [](double) { return Machine{0.016}; }).empty());
   EXPECT_EQ(keeper.step(), kLadder[0]);
   EXPECT_EQ(keeper.drawn(), DrawnPart{});
@@ -95,10 +95,10 @@ TEST(PaceKeeperTest, DrawsEverythingWhereThatIsQuickEnough) {
 TEST(PaceKeeperTest, HoldsThePaceOnMachinesOfManySpeedsAndStaysThere) {
   for (int i = 0; i < 31; ++i) {
     const double full_s = 0.010 * std::pow(1.1, i);  // to 0.17
-    PaceKeeper keeper(kLadder, 0);
+    Keeper keeper(kLadder, 0);
     const Machine machine{full_s};
     const auto same = [&](double) { return machine; };
-    run_for(keeper, PaceKeeper::kSettling_s, same);
+    run_for(keeper, Keeper::kSettling_s, same);
     EXPECT_LE(work_s(keeper, machine), 1.05 * keeper.picture_s()) << full_s;
     // What it has measured, it knows: it does not go to and fro.
     EXPECT_LE(run_for(keeper, 1.5 * kHour_s, same).size(), 2U) << full_s;
@@ -112,7 +112,7 @@ TEST(PaceKeeperTest, HoldsThePaceOnMachinesOfManySpeedsAndStaysThere) {
 }
 
 TEST(PaceKeeperTest, KnowsAVerySlowMachineWithinSeconds) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   const std::vector<Change> changes = run_for(keeper, 20.0, [](double) { return Machine{0.9}; });
   ASSERT_FALSE(changes.empty());
   EXPECT_LE(changes.front().at_s, 3.9 + 0.9);  // it has had a few pictures
@@ -121,37 +121,37 @@ TEST(PaceKeeperTest, KnowsAVerySlowMachineWithinSeconds) {
 
 TEST(PaceKeeperTest, GivesNothingUpThatSavesNothing) {
   for (const double work_s : {0.040, 0.060, 0.300}) {
-    PaceKeeper keeper(kLadder, 0);
+    Keeper keeper(kLadder, 0);
     for (int picture = 0; picture * work_s < 2.0 * kHour_s; ++picture) {
       keeper.advance(work_s, work_s);
-      if (picture * work_s > PaceKeeper::kSettling_s) {
+      if (picture * work_s > Keeper::kSettling_s) {
         ASSERT_EQ(keeper.step(), kLadder[1]) << picture * work_s;
       }
     }
   }
   // Where only what is below quality low saves nothing, it is drawn in that.
-  PaceKeeper keeper(kLadder, 3);
+  Keeper keeper(kLadder, 3);
   const auto machine = [](double) { return Machine{.full_s = 0.12, .fixed = 1.0}; };
-  run_for(keeper, PaceKeeper::kSettling_s, machine);
+  run_for(keeper, Keeper::kSettling_s, machine);
   EXPECT_EQ(keeper.step(), kLadder[3]);
   EXPECT_TRUE(run_for(keeper, 2.0 * kHour_s, machine).empty());
 }
 
 TEST(PaceKeeperTest, DoesNotJudgeWhatADriverPreparesAtFirstUse) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   const std::vector<Change> changes =
       run_for(keeper, 60.0, [](double now_s) { return Machine{now_s < 0.9 ? 0.07 : 0.014}; });
   EXPECT_TRUE(changes.empty());
 }
 
 TEST(PaceKeeperTest, ALoadOfASecondChangesNothing) {
-  PaceKeeper keeper(kLadder, 1);
+  Keeper keeper(kLadder, 1);
   const auto machine = [](double now_s) { return Machine{std::fmod(now_s, 12.0) < 1.3 ? 0.037 : 0.025}; };
   EXPECT_TRUE(run_for(keeper, 300.0, machine).empty());
 }
 
 TEST(PaceKeeperTest, ASlowPictureNowAndThenChangesNothing) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   int picture = 0;
   for (int i = 0; i < 20000; ++i) {
     keeper.advance(kRefresh_s, ++picture % 20 == 0 ? 0.2 : 0.012);
@@ -160,13 +160,13 @@ TEST(PaceKeeperTest, ASlowPictureNowAndThenChangesNothing) {
 }
 
 TEST(PaceKeeperTest, PicturesThatWereNotMeasuredDoNotCount) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   for (int i = 0; i < 1000; ++i) keeper.advance(0.5, std::nullopt);
   EXPECT_EQ(keeper.step(), kLadder[0]);
 }
 
 TEST(PaceKeeperTest, GivesWayToALoadAfterThreeSecondsAndComesBackAMinuteAfterIt) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   run_for(keeper, 120.0, [](double) { return Machine{0.014}; });
   const std::vector<Change> changes = run_for(keeper, 600.0, [](double now_s) {
     return Machine{now_s < 100.0 ? 0.014 : now_s < 200.0 ? 0.045 : 0.014};
@@ -181,7 +181,7 @@ TEST(PaceKeeperTest, GivesWayToALoadAfterThreeSecondsAndComesBackAMinuteAfterIt)
 }
 
 TEST(PaceKeeperTest, ChangesAtMostTwiceInAnHourWhateverComes) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   run_for(keeper, 120.0, [](double) { return Machine{0.014}; });
   std::vector<Change> changes = run_for(
       keeper, 5.0 * kHour_s, [](double now_s) { return Machine{std::fmod(now_s, 400.0) < 200.0 ? 0.1 : 0.005}; });
@@ -190,7 +190,7 @@ TEST(PaceKeeperTest, ChangesAtMostTwiceInAnHourWhateverComes) {
 }
 
 TEST(PaceKeeperTest, TheGrassAndTheMeshesChangeSlowly) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   DrawnPart before;
   for (double now_s = 0.0; now_s < 100.0;) {
     const double work_s = Machine{0.25}.work_s(keeper.step(), keeper.drawn());
@@ -205,26 +205,25 @@ TEST(PaceKeeperTest, TheGrassAndTheMeshesChangeSlowly) {
 }
 
 TEST(PaceLadderTest, WhatIsGivenUpIsTheSameNumberInEveryLadder) {
-  const std::array ladders{kLadder, PaceLadder(look::Quality::kAuto, 1.0 / 144.0),
-                           PaceLadder(look::Quality::kLow, kRefresh_s)};
-  for (const PaceLadder& ladder : ladders) {
+  const std::array ladders{kLadder, Ladder(look::Quality::kAuto, 1.0 / 144.0), Ladder(look::Quality::kLow, kRefresh_s)};
+  for (const Ladder& ladder : ladders) {
     for (std::uint8_t least = 0; least < 12; ++least) {
-      const PaceStep& step = ladder[ladder.giving_up(least)];
+      const Step& step = ladder[ladder.giving_up(least)];
       if (least > 6) continue;
-      EXPECT_EQ(PaceLadder::given_up(step), std::max(least, PaceLadder::given_up(ladder[0])));
+      EXPECT_EQ(Ladder::given_up(step), std::max(least, Ladder::given_up(ladder[0])));
       EXPECT_EQ(step.part, kLadder[kLadder.giving_up(least)].part);
     }
   }
 }
 
 TEST(PaceKeeperTest, DrawsNoMoreThanAnotherPartOfTheWall) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   const auto quick = [](double) { return Machine{0.010}; };
   run_for(keeper, 10.0, quick);
   keeper.hold(3);
   run_for(keeper, 600.0, quick);
   EXPECT_EQ(keeper.step().quality, look::Quality::kLow);
-  EXPECT_EQ(keeper.drawn(), PaceLadder::kParts[0]);
+  EXPECT_EQ(keeper.drawn(), Ladder::kParts[0]);
   EXPECT_EQ(keeper.given_up(), 0) << "nor does it say that it needs this itself";
   keeper.hold(1);
   EXPECT_EQ(keeper.step(), kLadder[2]);
@@ -234,28 +233,28 @@ TEST(PaceKeeperTest, DrawsNoMoreThanAnotherPartOfTheWall) {
   const std::uint8_t own = keeper.given_up();
   EXPECT_GE(own, 3);
   keeper.hold(1);
-  EXPECT_EQ(PaceLadder::given_up(keeper.step()), own);
+  EXPECT_EQ(Ladder::given_up(keeper.step()), own);
 }
 
 TEST(PaceKeeperTest, AnotherLadderBeginsWhereThePictureIs) {
-  PaceKeeper keeper(kLadder, kLadder.size() - 2);
-  keeper.set_ladder(PaceLadder(look::Quality::kLow, kRefresh_s));
+  Keeper keeper(kLadder, kLadder.size() - 2);
+  keeper.set_ladder(Ladder(look::Quality::kLow, kRefresh_s));
   EXPECT_EQ(keeper.step(), kLadder[kLadder.size() - 2]);
-  keeper.set_ladder(PaceLadder(look::Quality::kHigh, kRefresh_s));
-  EXPECT_EQ(keeper.step(), (PaceStep{.quality = look::Quality::kHigh, .refreshes = 2}));
+  keeper.set_ladder(Ladder(look::Quality::kHigh, kRefresh_s));
+  EXPECT_EQ(keeper.step(), (Step{.quality = look::Quality::kHigh, .refreshes = 2}));
   keeper.set_ladder(kLadder);
   EXPECT_EQ(keeper.step(), kLadder[1]);
-  PaceKeeper quick(kLadder, 0);
-  quick.set_ladder(PaceLadder(look::Quality::kMedium, 1.0 / 144.0));
-  EXPECT_EQ(quick.step(), (PaceStep{.quality = look::Quality::kMedium}));
+  Keeper quick(kLadder, 0);
+  quick.set_ladder(Ladder(look::Quality::kMedium, 1.0 / 144.0));
+  EXPECT_EQ(quick.step(), (Step{.quality = look::Quality::kMedium}));
 }
 
 TEST(PaceKeeperTest, TakesAnyTime) {
-  PaceKeeper keeper(kLadder, 0);
+  Keeper keeper(kLadder, 0);
   for (const double time_s : {0.0, -1.0, 1e9, 1e-9}) {
     for (int i = 0; i < 1000; ++i) keeper.advance(time_s, time_s);
   }
-  EXPECT_GE(keeper.drawn().blades, PaceLadder::kParts.back().blades);
+  EXPECT_GE(keeper.drawn().blades, Ladder::kParts.back().blades);
   EXPECT_LE(keeper.drawn().blades, 1.0F);
 }
 

@@ -15,7 +15,7 @@ TEST(Quality, SaysWhatItLeavesOut) {
   EXPECT_EQ(quality_text(look::Quality::kHigh), "quality high");
   EXPECT_EQ(quality_text(look::Quality::kLow), "quality low: hard shadows, on the ground only; fewer, wider blades");
   EXPECT_EQ(
-      quality_text(look::Quality::kLow, PaceLadder::kParts[1]),
+      quality_text(look::Quality::kLow, Ladder::kParts[1]),
       "quality low: hard shadows, on the ground only; fewer, wider blades; for the pace 72 % as wide and high, 70 % of "
       "the blades, trees, cloth, water and shadows 1.2 times as coarse");
   EXPECT_EQ(quality_text(look::Quality::kMedium, {}, 2),

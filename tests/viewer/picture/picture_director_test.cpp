@@ -25,7 +25,7 @@ class PictureDirectorTest : public testing::Test {
 
   ViewerOptions options_;
   NullRenderer renderer_{1280, 720};
-  PictureDirector director_{options_, renderer_, "wall:4748"};
+  Director director_{options_, renderer_, "wall:4748"};
 };
 
 TEST_F(PictureDirectorTest, TheHandBeginsWhereThePictureIs) {

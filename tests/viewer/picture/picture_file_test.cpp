@@ -13,10 +13,10 @@ namespace yuragi::viewer::picture {
 namespace {
 
 TEST(PictureFile, HasTheFormatThatItsNameAsksFor) {
-  EXPECT_EQ(picture_format("a.png"), PictureFormat::kPng);
-  EXPECT_EQ(picture_format("a.PNG"), PictureFormat::kPng);
-  EXPECT_EQ(picture_format("a.jpg"), PictureFormat::kJpeg);
-  EXPECT_EQ(picture_format("a.b.JPEG"), PictureFormat::kJpeg);
+  EXPECT_EQ(picture_format("a.png"), Format::kPng);
+  EXPECT_EQ(picture_format("a.PNG"), Format::kPng);
+  EXPECT_EQ(picture_format("a.jpg"), Format::kJpeg);
+  EXPECT_EQ(picture_format("a.b.JPEG"), Format::kJpeg);
   for (const char* name : {"a.gif", "a", "png", "a.png.txt", ".png"})
     EXPECT_EQ(picture_format(name), std::nullopt) << name;
 }

@@ -105,8 +105,8 @@ TEST_F(AllKindsTest, AreHeldByTheHistoryAndSampledBetween) {
   const PoseMoment expected = numbered(garden_, 1.5F, 0.75F);
   for (std::size_t i = 0; i < garden_.size(); ++i) {
     EXPECT_EQ(out.opacities[i], 0.75F);
-    const pose::PoseArrays<const float> got(out.poses[i]);
-    const pose::PoseArrays<const float> wanted(expected.poses[i]);
+    const pose::Arrays<const float> got(out.poses[i]);
+    const pose::Arrays<const float> wanted(expected.poses[i]);
     for (std::size_t array = 0; array < got.size(); ++array) {
       for (std::size_t n = 0; n < got[array].size(); ++n) ASSERT_EQ(got[array][n], wanted[array][n]);
     }

@@ -308,7 +308,7 @@ TEST(PoseTimeline, BlendsWindAsVectorsSoThatNorthIsCrossedOnTheShortWay) {
 
   bool has_crossed = false;
   for (int i = 0; i < 200; ++i) {
-    const wind::WindVector wind = theatre.timeline.advance(100.1 + 0.002 * i).wind.wind;
+    const wind::Vector wind = theatre.timeline.advance(100.1 + 0.002 * i).wind.wind;
     const double direction_deg = wind::direction_from_deg(wind);
     EXPECT_TRUE(direction_deg > 349.99 || direction_deg < 10.01) << direction_deg;
     EXPECT_GT(speed_of(wind), 4.9);

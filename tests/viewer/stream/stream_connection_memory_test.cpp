@@ -24,8 +24,7 @@ namespace {
 TEST(StreamConnection, GivesUpWhereThereIsNoMemoryForAMessageAndTriesAgain) {
   const wire::Bytes hello = wire::encode(wire::Hello{wire::kProtocol, "a test", 60.0});
   StreamServer server(hello);
-  const StreamConnection connection(
-      {.host = "127.0.0.1", .port = server.port(), .min_backoff = std::chrono::seconds(1)});
+  const Connection connection({.host = "127.0.0.1", .port = server.port(), .min_backoff = std::chrono::seconds(1)});
   ASSERT_TRUE(server.wait_for_subscriptions(1));
 
   is_large_memory_gone = true;

@@ -47,13 +47,13 @@ wire::Bytes message_of_unknown_kind() {
     wire::Bytes changed = kHello;
     changed[i] = 99;
     const auto message = wire::decode(std::span(changed).subspan(wire::kSizePrefixBytes));
-    if (!message && message.error() == wire::WireError::kUnknown) return changed;
+    if (!message && message.error() == wire::Error::kUnknown) return changed;
   }
   ADD_FAILURE() << "no byte of a Hello makes it a message of unknown kind";
   return {};
 }
 
-StreamOptions options_for(std::uint16_t port) {
+Options options_for(std::uint16_t port) {
   return {.host = "127.0.0.1",
           .port = port,
           .min_backoff = std::chrono::milliseconds(5),
@@ -63,7 +63,7 @@ StreamOptions options_for(std::uint16_t port) {
 /// A connection, and all that has come over it.
 class Viewer {
  public:
-  explicit Viewer(StreamOptions options) : connection(std::move(options)) {}
+  explicit Viewer(Options options) : connection(std::move(options)) {}
 
   /// Takes what comes until `is_done` (or for a minute, if it hangs).
   bool wait_until(const std::function<bool()>& is_done) {
@@ -89,7 +89,7 @@ class Viewer {
 
   std::vector<std::string> replies;
   bool has_new_connection = false;
-  StreamConnection connection;
+  Connection connection;
   std::vector<std::string> scenes;
   std::vector<wire::Frame> frames;
   std::optional<wire::Sensors> sensors;
@@ -110,7 +110,7 @@ TEST(StreamConnection, SubscribesAndHandsOverScenesFramesAndSensors) {
   EXPECT_EQ(viewer.frames[1].info.sequence, 2U);
   EXPECT_NEAR(std::get<pose::StrandPose>(viewer.frames[1].poses.at(0)).bend_south_rad.at(0), -0.5F, 1e-3F);
   EXPECT_EQ(viewer.sensors->clients, 7U);
-  EXPECT_EQ(viewer.connection.status().state, StreamState::kConnected);
+  EXPECT_EQ(viewer.connection.status().state, State::kConnected);
   EXPECT_TRUE(viewer.connection.status().is_same_machine);
   EXPECT_THAT(viewer.connection.status().text, HasSubstr("a test"));
 }
@@ -142,7 +142,7 @@ TEST(StreamConnection, ComesBackWhenTheServerIsRestartedOnThePort) {
   ASSERT_TRUE(viewer.wait_until([&] { return !viewer.scenes.empty(); }));
   server.reset();
   ASSERT_TRUE(viewer.wait_for_text("no daemon answers"));
-  EXPECT_EQ(viewer.connection.status().state, StreamState::kWaiting);
+  EXPECT_EQ(viewer.connection.status().state, State::kWaiting);
 
   server = std::make_unique<StreamServer>(kHello + scenes_named("second"), port);
   ASSERT_TRUE(server->wait_for_subscriptions(1));
@@ -191,7 +191,7 @@ TEST(StreamConnection, TellsOnlyADaemonThatKnowsItWhatTheWallGivesUp) {
 
 TEST(StreamConnection, ShowsTheTokenWithEachSubscription) {
   StreamServer server(kHello);
-  StreamOptions options = options_for(server.port());
+  Options options = options_for(server.port());
   options.token = Secret("correct horse battery staple");
   const Viewer viewer(options);
   ASSERT_TRUE(server.wait_for_subscriptions(1));
@@ -207,7 +207,7 @@ TEST(StreamConnection, WithoutAConnectionAControlIsDropped) {
     const StreamServer gone(kHello);
     port = gone.port();
   }
-  StreamConnection connection(options_for(port));
+  Connection connection(options_for(port));
   for (int i = 0; i < 1000; ++i) connection.send({.scene = "elm"});
   StreamServer server(kHello, port);
   ASSERT_TRUE(server.wait_for_subscriptions(1));
@@ -247,7 +247,7 @@ TEST(StreamConnection, SaysThatAServerSpeaksAnotherProtocol) {
 
 TEST(StreamConnection, GivesUpASilentServerAndTriesAgain) {
   StreamServer server({});
-  StreamOptions options = options_for(server.port());
+  Options options = options_for(server.port());
   options.silence_limit = std::chrono::milliseconds(30);
   const Viewer viewer(options);
   EXPECT_TRUE(server.wait_for_subscriptions(3));
@@ -266,9 +266,9 @@ TEST(StreamConnection, KeepsOnlyTheNewestFramesForAReaderWhoDoesNotLook) {
   }
   Inbox inbox = viewer.connection.take();
   EXPECT_TRUE(inbox.scenes.has_value());
-  ASSERT_EQ(inbox.frames.size(), StreamConnection::kMaxWaitingFrames);
+  ASSERT_EQ(inbox.frames.size(), Connection::kMaxWaitingFrames);
   EXPECT_EQ(inbox.frames.back().frame.info.sequence, 300U);
-  EXPECT_EQ(inbox.frames.front().frame.info.sequence, 301U - StreamConnection::kMaxWaitingFrames);
+  EXPECT_EQ(inbox.frames.front().frame.info.sequence, 301U - Connection::kMaxWaitingFrames);
 }
 
 TEST(StreamConnection, DropsFramesOfTheScenesBefore) {
@@ -289,7 +289,7 @@ TEST(StreamConnection, StopsWhileItWaitsToTryAgain) {
   // Were the stop to wait for the next attempt, this would take an hour.
   std::uint16_t port = 0;
   { port = StreamServer({}).port(); }
-  StreamOptions options = options_for(port);
+  Options options = options_for(port);
   options.min_backoff = options.max_backoff = std::chrono::hours(1);
   Viewer viewer(options);
   EXPECT_TRUE(viewer.wait_for_text("no daemon answers"));

@@ -10,13 +10,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const StreamStatus kConnecting{.state = StreamState::kConnecting, .text = "connecting to 127.0.0.1:7410"};
-const StreamStatus kConnected{.state = StreamState::kConnected, .text = "connected to 127.0.0.1:7410"};
-const StreamStatus kRefused{.state = StreamState::kWaiting,
-                            .text = "no daemon answers at 127.0.0.1:7410: Connection refused"};
+const Status kConnecting{.state = State::kConnecting, .text = "connecting to 127.0.0.1:7410"};
+const Status kConnected{.state = State::kConnected, .text = "connected to 127.0.0.1:7410"};
+const Status kRefused{.state = State::kWaiting, .text = "no daemon answers at 127.0.0.1:7410: Connection refused"};
 
 TEST(StreamNotice, AFailureIsShownAtOnceWithWhatToDo) {
-  StreamNotice notice;
+  Notice notice;
   EXPECT_THAT(notice.advance(10.0, Playback::kNothing, kConnecting), IsEmpty());
   EXPECT_EQ(notice.advance(10.1, Playback::kNothing, kRefused),
             "no daemon answers at 127.0.0.1:7410: Connection refused\n"
@@ -24,7 +23,7 @@ TEST(StreamNotice, AFailureIsShownAtOnceWithWhatToDo) {
 }
 
 TEST(StreamNotice, AFailureStaysWhileItIsTriedAgain) {
-  StreamNotice notice;
+  Notice notice;
   notice.advance(10.0, Playback::kNothing, kRefused);
   for (const double now_s : {10.2, 11.3, 15.0}) {
     EXPECT_THAT(notice.advance(now_s, Playback::kNothing, kConnecting), HasSubstr("Connection refused")) << now_s;
@@ -34,8 +33,8 @@ TEST(StreamNotice, AFailureStaysWhileItIsTriedAgain) {
 }
 
 TEST(StreamNotice, AnAttemptThatTakesLongIsShownWithinTwoSeconds) {
-  for (const StreamStatus& status : {kConnecting, kConnected}) {
-    StreamNotice notice;
+  for (const Status& status : {kConnecting, kConnected}) {
+    Notice notice;
     EXPECT_THAT(notice.advance(10.0, Playback::kNothing, status), IsEmpty());
     EXPECT_THAT(notice.advance(10.9, Playback::kNothing, status), IsEmpty()) << "most daemons answer sooner";
     EXPECT_THAT(notice.advance(11.9, Playback::kNothing, status),
@@ -44,7 +43,7 @@ TEST(StreamNotice, AnAttemptThatTakesLongIsShownWithinTwoSeconds) {
 }
 
 TEST(StreamNotice, GoesWhenFramesComeAndDoesNotReturnWhenTheyStop) {
-  StreamNotice notice;
+  Notice notice;
   notice.advance(10.0, Playback::kNothing, kRefused);
   EXPECT_THAT(notice.advance(11.0, Playback::kLive, kConnected), IsEmpty());
   for (const Playback playback : {Playback::kReplaying, Playback::kReturning}) {
@@ -53,7 +52,7 @@ TEST(StreamNotice, GoesWhenFramesComeAndDoesNotReturnWhenTheyStop) {
 }
 
 TEST(StreamNotice, ScenesThatReplaceOthersHaveTheirTimeToCome) {
-  StreamNotice notice;
+  Notice notice;
   notice.advance(10.0, Playback::kNothing, kConnected);
   notice.advance(11.0, Playback::kLive, kConnected);
   EXPECT_THAT(notice.advance(20.0, Playback::kNothing, kConnected), IsEmpty());

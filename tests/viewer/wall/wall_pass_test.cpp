@@ -55,12 +55,12 @@ class WallPassTest : public testing::Test {
     card_->bind_resolved();
     TestCard().draw(kPicture);
     picture_ = {kPicture, card_->read_rgb()};
-    vertex_array_ = std::make_unique<gl::GlVertexArray>();
+    vertex_array_ = std::make_unique<gl::VertexArray>();
   }
   void TearDown() override { EXPECT_EQ(gl::gl_error_count(), errors_before_); }
 
   Pixels shown(const output::Window& window, const output::Size& monitor, bool is_marked = false) {
-    WallPass pass;
+    Pass pass;
     pass.take(*card_);
     gl::RenderTarget target(monitor.width_px, monitor.height_px, 1);
     target.bind_resolved();
@@ -94,7 +94,7 @@ class WallPassTest : public testing::Test {
 
   std::unique_ptr<gl::HeadlessContext> context_;
   std::unique_ptr<gl::RenderTarget> card_;
-  std::unique_ptr<gl::GlVertexArray> vertex_array_;
+  std::unique_ptr<gl::VertexArray> vertex_array_;
   Pixels picture_;
   int errors_before_ = 0;
 };

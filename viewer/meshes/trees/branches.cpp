@@ -41,7 +41,7 @@ void Branches::move_to(const pose::TreeJoints& joints) {
   }
 }
 
-void Branches::choose(const View& view, float ring_px, const TreePlace& place) {
+void Branches::choose(const View& view, float ring_px, const Place& place) {
   const auto planes = side_planes(view);
   const glm::vec3 eye_m(view.eye_m);
   for (BranchGroup& group : groups_) group.count = 0;

@@ -35,8 +35,8 @@ class Branches {
   void move_to(const pose::TreeJoints& joints);
 
   /// Those in view of the tree, or of a copy of it, with a ring at least for each `ring_px` pixels of their length.
-  void choose(const View& view, float ring_px, const TreePlace& place = {});
-  std::span<const TreePart> parts() const { return std::span(chosen_).first(chosen_count_); }
+  void choose(const View& view, float ring_px, const Place& place = {});
+  std::span<const Part> parts() const { return std::span(chosen_).first(chosen_count_); }
   std::span<const BranchGroup> groups() const { return groups_; }
 
  private:
@@ -44,12 +44,12 @@ class Branches {
 
   const pose::TreeSkeleton* tree_;
   std::size_t level_;
-  std::vector<TreePart> parts_;
+  std::vector<Part> parts_;
   std::vector<glm::vec3> middles_m_;
   std::vector<float> lengths_m_;
   std::vector<std::size_t> group_of_;
   std::vector<BranchGroup> groups_;
-  std::vector<TreePart> chosen_;
+  std::vector<Part> chosen_;
   std::size_t chosen_count_ = 0;
 };
 

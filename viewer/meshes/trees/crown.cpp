@@ -226,7 +226,7 @@ void Crown::move_to(const pose::TreeJoints& joints) {
   blown_ /= static_cast<float>(std::max<std::size_t>(parts_.size(), 1));
 }
 
-void Crown::choose(const View& view, const SprayDetail& detail, const TreePlace& place) {
+void Crown::choose(const View& view, const SprayDetail& detail, const Place& place) {
   const auto planes = side_planes(view);
   const glm::vec3 eye_m(view.eye_m);
   for (SprayGroup& group : groups_) group.count = 0;

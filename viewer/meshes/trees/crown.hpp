@@ -60,7 +60,7 @@ class Crown {
   float blown() const { return blown_; }
 
   /// Those in view of the tree, or of a copy of it.
-  void choose(const View& view, const SprayDetail& detail, const TreePlace& place = {});
+  void choose(const View& view, const SprayDetail& detail, const Place& place = {});
   std::span<const SprayPlace> places() const { return std::span(chosen_).first(chosen_count_); }
   std::span<const SprayGroup> groups() const { return groups_; }
 
@@ -84,7 +84,7 @@ class Crown {
   SprayShape shape_;
   bool is_stiff_;  // its strands do not bend, other than those of the stream
   float leaf_m_ = 0.0F;
-  std::vector<TreePart> parts_;
+  std::vector<Part> parts_;
   std::vector<SprayPlace> sprays_;
   std::vector<Ball> balls_;  // around each block of sprays
   std::vector<Choice> choices_;

@@ -31,12 +31,12 @@ ImpostorBox impostor_box(const Bounds& tree);
 View impostor_view(const ImpostorBox& box, std::size_t side, std::size_t row, int side_px);
 
 /// Where an impostor stands, as its shader reads it.
-struct TreeImpostor {
+struct Impostor {
   glm::vec4 foot_scale{0.0F};  ///< metres
   glm::vec4 turn_sway{0.0F};   ///< cosine and sine; how far its middle is blown toward east and south, metres
   float share = 1.0F;          ///< of its pixels that are drawn
   float hanging = 1.0F;        ///< of its leaves
-  float chance = 0.5F;         ///< TreePlace::chance()
+  float chance = 0.5F;         ///< Place::chance()
 };
 
 /// The share of an impostor that is drawn of a tree so many pixels high: 0 near by, 1 from `largest_px` on. In between

@@ -90,22 +90,22 @@ glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, 
   return std::cos(curled_rad) * rest + std::sin(curled_rad) * curl;
 }
 
-std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level) {
+std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level) {
   return tree_parts(tree, level, tree.foliage);
 }
 
-std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage) {
+std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage) {
   const pose::TreeLevel& from = tree.levels[level];
   const LeafTints tints = tints_of(tree, foliage);
   const math::RandomStream chance(level, math::stream_id("viewer tree"));
   const math::RandomStream twigs(level, math::stream_id("viewer tree's twigs"));
   const pose::StrandSkeleton& strands = from.strands;
-  std::vector<TreePart> parts(strands.strand_count);
+  std::vector<Part> parts(strands.strand_count);
   const glm::vec3 middle_m = middle_of(strands);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto [first, second] = chance.uniform_pair(2 * i);
     const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
-    TreePart& part = parts[i];
+    Part& part = parts[i];
     part.root_m = {strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]};
     part.strand = static_cast<std::uint32_t>(i);
     part.base_radius_m = from.base_radius_m[i];

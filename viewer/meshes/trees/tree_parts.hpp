@@ -13,7 +13,7 @@ namespace yuragi::viewer::meshes::trees {
 /// An instance for a strand of a tree (a branch or a leaf), in the layout that the tree's shaders read.
 ///
 /// A tree's joints lie in one array, level behind level, each in the layout of JointPositions.
-struct TreePart {
+struct Part {
   std::array<float, 3> root_m{};  ///< position at rest
   float base_radius_m = 0.0F;     ///< of a leaf: half its width
   std::array<float, 3> tint{};    ///< linear light
@@ -29,8 +29,8 @@ std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level);
 
 /// The parts of a level, one a strand, leaves in the colours of the tree's foliage, or of another. The same tree always
 /// makes the same parts.
-std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level);
-std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage);
+std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level);
+std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage);
 
 /// The direction of a link of a strand at rest.
 glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, std::size_t link);

@@ -6,7 +6,7 @@
 namespace yuragi::viewer::meshes::trees {
 
 /// Where a copy of a tree stands: turned about the upright axis through its own foot, scaled, and moved.
-struct TreePlace {
+struct Place {
   glm::vec3 from_m{0.0F};  ///< the foot of the tree that is copied
   glm::vec3 to_m{0.0F};    ///< the foot of the copy
   float cosine = 1.0F;     ///< of the turn, clockwise from above

@@ -20,7 +20,7 @@ constexpr const char* kNoDaemon = "127.0.0.1:1";
 template <bool kSpeaks>
 class AskedSensor final : public drivers::sensor::Sensor {
  public:
-  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     if (kSpeaks) {
       sink.reading({.time = clock.now(), .speed_m_s = 3.0, .direction_deg = 350.0, .gust_m_s = {}});
     } else {
@@ -86,7 +86,7 @@ TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
   const test::TemporaryFolder folder;
   const auto file = folder / "field.windlog";
   {
-    auto writer = drivers::windlog::WindlogWriter::open(file).value();
+    auto writer = drivers::windlog::Writer::open(file).value();
     const auto at = [](double time_s) {
       return Instant{MonoTime(from_seconds(100.0 + time_s)), UtcTime(from_seconds(1.7e9 + time_s))};
     };

@@ -20,20 +20,20 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct Imported {
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   std::vector<std::string> sensors;
   std::vector<wind::StationQuantities> quantities;
-  CsvImportReport report;
+  ImportReport report;
   std::string failure;
 };
 
-Imported import_text(const std::string& text, const CsvImportOptions& options = {}) {
+Imported import_text(const std::string& text, const ImportOptions& options = {}) {
   Imported imported;
   std::istringstream in(text);
   const auto report = import_csv(
       in, "a.csv", options,
       {.reading =
-           [&](std::string_view sensor, const wind::WindReading& reading) {
+           [&](std::string_view sensor, const wind::Reading& reading) {
              imported.sensors.emplace_back(sensor);
              imported.readings.push_back(reading);
            },
@@ -47,8 +47,8 @@ Imported import_text(const std::string& text, const CsvImportOptions& options = 
   return imported;
 }
 
-CsvImportOptions with_column(CsvRole role, const std::string& name) {
-  CsvImportOptions options;
+ImportOptions with_column(Role role, const std::string& name) {
+  ImportOptions options;
   options.columns[static_cast<std::size_t>(role)] = name;
   return options;
 }
@@ -87,7 +87,7 @@ TEST(CsvImport, TurnsComponentsIntoWhereTheWindComesFrom) {
   EXPECT_EQ(imported.readings[2].speed_m_s, 5.0);
   EXPECT_EQ(imported.readings[3].direction_deg, std::nullopt) << "a calm comes from nowhere";
 
-  CsvImportOptions from;
+  ImportOptions from;
   from.components_are_from = true;
   EXPECT_NEAR(*import_text(text, from).readings[0].direction_deg, 90.0, 1e-9);
 }
@@ -106,7 +106,7 @@ TEST(CsvImport, UnderstandsUnitsInNamesAndAsAnOption) {
   EXPECT_DOUBLE_EQ(speed_of_header("Wind Speed (kts)"), 10.0 * kMetresPerSecondPerKnot);
   EXPECT_DOUBLE_EQ(speed_of_header("wind speed mph"), 10.0 * kMetresPerSecondPerMph);
 
-  CsvImportOptions knots;
+  ImportOptions knots;
   knots.unit = find_speed_unit("kn");
   const auto imported = import_text("time,u,v,gust\n0,10,0,20\n", knots);
   EXPECT_DOUBLE_EQ(imported.readings[0].speed_m_s, 10.0 * kMetresPerSecondPerKnot);
@@ -114,7 +114,7 @@ TEST(CsvImport, UnderstandsUnitsInNamesAndAsAnOption) {
 }
 
 TEST(CsvImport, UnderstandsDirectionsInAllConventions) {
-  const auto direction = [](const std::string& header, const std::string& text, const CsvImportOptions& options = {}) {
+  const auto direction = [](const std::string& header, const std::string& text, const ImportOptions& options = {}) {
     const auto imported = import_text("time,speed," + header + "\n0,1," + text + "\n", options);
     return imported.readings.empty() ? std::nullopt : imported.readings[0].direction_deg;
   };
@@ -123,12 +123,12 @@ TEST(CsvImport, UnderstandsDirectionsInAllConventions) {
   EXPECT_EQ(direction("dir", "nnw"), 337.5);
   EXPECT_EQ(direction("dir", "NaN"), std::nullopt);
   EXPECT_NEAR(direction("dir_rad", "3.14159265358979").value(), 180.0, 1e-9);
-  CsvImportOptions options;
+  ImportOptions options;
   options.direction_is_toward = true;
   EXPECT_EQ(direction("dir", "90", options), 270.0);
   EXPECT_EQ(direction("dir", "270", options), 90.0);
   options = {};
-  options.direction_unit = CsvDirectionUnit::kPoint16;
+  options.direction_unit = DirectionUnit::kPoint16;
   EXPECT_EQ(direction("dir", "4", options), 90.0);
   EXPECT_EQ(direction("dir", "North"), 0.0);
 }
@@ -153,23 +153,23 @@ TEST(CsvImport, ReadsQuotedFieldsAndAByteOrderMark) {
 
 TEST(CsvImport, AQuoteWithinQuotesStandsTwice) {
   const auto imported = import_text("time;\"the \"\"true\"\" speed\";note\n0;\"4.5\";\"a; b\"\n",
-                                    with_column(CsvRole::kSpeed, "the \"true\" speed"));
+                                    with_column(Role::kSpeed, "the \"true\" speed"));
   EXPECT_EQ(imported.failure, "");
   ASSERT_EQ(imported.readings.size(), 1U);
   EXPECT_EQ(imported.readings[0].speed_m_s, 4.5);
 }
 
 TEST(CsvImport, AColumnMayBeTwoThings) {
-  auto options = with_column(CsvRole::kSpeed, "wind");
-  options.columns[static_cast<std::size_t>(CsvRole::kGust)] = "wind";
+  auto options = with_column(Role::kSpeed, "wind");
+  options.columns[static_cast<std::size_t>(Role::kGust)] = "wind";
   const auto imported = import_text("time,wind\n0,4.5\n", options);
   ASSERT_EQ(imported.readings.size(), 1U) << imported.failure;
   EXPECT_EQ(imported.readings[0].gust_m_s, 4.5);
 }
 
 TEST(CsvImport, TakesTheColumnsThatAreNamed) {
-  CsvImportOptions options = with_column(CsvRole::kSpeed, "AVG (20 M)");
-  options.columns[static_cast<std::size_t>(CsvRole::kTime)] = "when";
+  ImportOptions options = with_column(Role::kSpeed, "AVG (20 M)");
+  options.columns[static_cast<std::size_t>(Role::kTime)] = "when";
   const auto imported = import_text("When,Speed,Avg (20 m)\n0,1,2\n", options);
   ASSERT_EQ(imported.readings.size(), 1U);
   EXPECT_EQ(imported.readings[0].speed_m_s, 2.0);
@@ -180,7 +180,7 @@ TEST(CsvImport, SaysWhichColumnsThereAreWhenItFindsNoneThatFit) {
               testing::AllOf(HasSubstr("a.csv"), HasSubstr("a, b"), HasSubstr("--time")));
   EXPECT_THAT(import_text("time,b\n1,2\n").failure, HasSubstr("--speed"));
   EXPECT_THAT(import_text("time,u\n1,2\n").failure, HasSubstr("--speed"));
-  EXPECT_THAT(import_text("time,speed\n1,2\n", with_column(CsvRole::kGust, "peak")).failure, HasSubstr("\"peak\""));
+  EXPECT_THAT(import_text("time,speed\n1,2\n", with_column(Role::kGust, "peak")).failure, HasSubstr("\"peak\""));
   EXPECT_THAT(import_text("time,speed,speed\n1,2,3\n").failure, HasSubstr("uplicated"));
   EXPECT_THAT(import_text("").failure, HasSubstr("header"));
   EXPECT_THAT(import_text("# nothing\n\n").failure, HasSubstr("header"));
@@ -216,7 +216,7 @@ TEST(CsvImport, LeavesOutRowsThatGoBackInTime) {
 }
 
 TEST(CsvImport, StrictEndsAtTheFirstBadRow) {
-  CsvImportOptions options;
+  ImportOptions options;
   options.strict = true;
   EXPECT_EQ(import_text("time,speed\n0,1\n1,x\n2,1\n", options).failure, "a.csv:3: not a number in speed: \"x\"");
   EXPECT_EQ(import_text("time,speed\n0,1\n1,1\n", options).report.taken, 2U);
@@ -233,7 +233,7 @@ TEST(CsvImport, SettlesTheTimeFormatWithTheFirstGoodRow) {
 }
 
 TEST(CsvImport, PassesOverTheCommentsThatItIsTold) {
-  CsvImportOptions options;
+  ImportOptions options;
   options.comment = '%';
   EXPECT_EQ(import_text("% mast\ntime,speed\n% pause\n0,1\n", options).report.rows, 1U);
   options.comment = 0;
@@ -256,13 +256,13 @@ TEST(CsvImport, GivesUpOnALineWithoutEnd) {
 
 std::vector<std::optional<double>> directions_of(const Imported& imported) {
   std::vector<std::optional<double>> directions;
-  for (const wind::WindReading& reading : imported.readings) directions.push_back(reading.direction_deg);
+  for (const wind::Reading& reading : imported.readings) directions.push_back(reading.direction_deg);
   return directions;
 }
 
 std::vector<double> speeds_of(const Imported& imported) {
   std::vector<double> speeds;
-  for (const wind::WindReading& reading : imported.readings) speeds.push_back(reading.speed_m_s);
+  for (const wind::Reading& reading : imported.readings) speeds.push_back(reading.speed_m_s);
   return speeds;
 }
 
@@ -292,7 +292,7 @@ TEST(CsvImport, AMarkForNoValueIsNoStorm) {
   EXPECT_EQ(gale.report.taken, 4U);
   EXPECT_THAT(gale.report.notes, testing::Contains(HasSubstr("--missing 99")));
 
-  CsvImportOptions options;
+  ImportOptions options;
   options.missing = {"7.7"};
   EXPECT_THAT(speeds_of(import_text("time,speed\n0,1\n1,7.7\n2,7.71\n", options)), ElementsAre(1.0, 7.71));
 }
@@ -310,7 +310,7 @@ TEST(CsvImport, WhatCanBeIsNoMarkForNoValue) {
 
 TEST(CsvImport, AFileWithoutAHeaderIsGivenOne) {
   EXPECT_THAT(import_text("2023-01-01 10:00,3.5,270\n").failure, HasSubstr("--header"));
-  CsvImportOptions options;
+  ImportOptions options;
   options.header = {"time", "", "speed_kn", "dir"};
   const auto imported = import_text("2023-01-01 10:00,7,10,270\n2023-01-01 10:10,7,20,280\n", options);
   ASSERT_EQ(imported.readings.size(), 2U) << imported.failure;
@@ -330,7 +330,7 @@ TEST(CsvImport, EachColumnHasAUnitOfItsOwn) {
 
   const auto fields = import_text("time,speed,gust\n0,10 kn,20 kn\n");
   EXPECT_DOUBLE_EQ(fields.readings.at(0).speed_m_s, 10.0 * kMetresPerSecondPerKnot);
-  CsvImportOptions options;
+  ImportOptions options;
   options.gust_unit = find_speed_unit("m/s");
   EXPECT_DOUBLE_EQ(*import_text("time,speed (km/h),gust\n0,36,12\n", options).readings[0].gust_m_s, 12.0);
 }
@@ -344,7 +344,7 @@ TEST(CsvImport, AUnitThatCannotBeRightIsAskedFor) {
   }
   EXPECT_THAT(import_text(strong).failure, HasSubstr("--unit"));
   EXPECT_THAT(import_text(weak_gusts).failure, HasSubstr("--gust-unit"));
-  CsvImportOptions options;
+  ImportOptions options;
   options.unit = find_speed_unit("km/h");
   EXPECT_EQ(import_text(strong, options).report.taken, 20U);
 }
@@ -370,8 +370,8 @@ TEST(CsvImport, WhichNumberIsTheDayIsSettledByAllRowsOrAskedFor) {
   EXPECT_THAT(import_text("time,speed\n3/4/2023,1\n4/4/2023,1\n").failure,
               HasSubstr("--time-format day-first or month-first"));
   EXPECT_EQ(import_text("time,speed\n3.4.2023,1\n4.4.2023,1\n").readings.at(1).time.mono, MonoTime{24h});
-  CsvImportOptions options;
-  options.time_format = CsvTimeFormat::kMonthFirst;
+  ImportOptions options;
+  options.time_format = TimeFormat::kMonthFirst;
   EXPECT_EQ(import_text("time,speed\n3/4/2023,1\n4/4/2023,1\n", options).readings.at(1).time.mono, MonoTime{31 * 24h});
 }
 
@@ -382,8 +382,8 @@ TEST(CsvImport, TheHourThatComesTwiceIsNotLostWithAZone) {
   const auto without = import_text(text);
   EXPECT_EQ(without.report.refused(), 1U);
   EXPECT_THAT(without.report.notes, testing::Contains(HasSubstr("--zone")));
-  CsvImportOptions options;
-  options.zone = CsvZone::parse("Europe/Berlin").value();
+  ImportOptions options;
+  options.zone = Zone::parse("Europe/Berlin").value();
   const auto with = import_text(text, options);
   EXPECT_EQ(with.report.refused(), 0U);
   EXPECT_EQ(with.readings.at(5).time.mono, MonoTime{150min});
@@ -417,7 +417,7 @@ TEST(CsvImport, WhatStationsSayBesidesTheWindIsKept) {
 }
 
 TEST(CsvImport, ConditionsTakeOneOfSeveralStations) {
-  CsvImportOptions options;
+  ImportOptions options;
   options.conditions = {{"STATION", "b"}};
   const auto imported = import_text("station,time,speed\na,0,1\nb,0,2\na,1,3\nb,1,4\n", options);
   EXPECT_THAT(speeds_of(imported), ElementsAre(2, 4));
@@ -429,7 +429,7 @@ TEST(CsvImport, ConditionsTakeOneOfSeveralStations) {
 TEST(CsvImport, LinesBeforeTheHeaderAreFoundOrSkipped) {
   const auto found = import_text("my station\n\nfirmware,2\ntime,speed\n0,1\n");
   EXPECT_THAT(speeds_of(found), ElementsAre(1));
-  CsvImportOptions options;
+  ImportOptions options;
   options.skip = 2;
   const auto skipped = import_text("time,speed\n9,9\ntime,speed\n0,1\n", options);
   EXPECT_THAT(speeds_of(skipped), ElementsAre(1));
@@ -452,12 +452,11 @@ TEST(CsvImport, APipeIsReadAsAFileIsAndKeptOnlyInPart) {
   const std::string row = "," + std::string(1000, 'x') + "\n";
   std::string text = "time,speed,note\n";
   std::size_t rows = 0;
-  while (text.size() < CsvInput::kMaxKept + 100'000) text += std::to_string(rows++) + ",1" + row;
+  while (text.size() < Input::kMaxKept + 100'000) text += std::to_string(rows++) + ",1" + row;
   OneWayBuffer buffer(text);
   std::istream in(&buffer);
   std::size_t taken = 0;
-  const auto report =
-      import_csv(in, "-", {}, {.reading = [&](std::string_view, const wind::WindReading&) { ++taken; }});
+  const auto report = import_csv(in, "-", {}, {.reading = [&](std::string_view, const wind::Reading&) { ++taken; }});
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(taken, rows);
   EXPECT_EQ(report->refused(), 0U);
@@ -475,7 +474,7 @@ TEST(CsvImport, OfAnyBytesEndsWithReadingsOrAFailure) {
     if (imported.failure.empty()) {
       EXPECT_EQ(imported.readings.size(), imported.report.taken);
     }
-    for (const wind::WindReading& reading : imported.readings) EXPECT_TRUE(wind::is_plausible(reading));
+    for (const wind::Reading& reading : imported.readings) EXPECT_TRUE(wind::is_plausible(reading));
   }
 }
 
@@ -486,12 +485,11 @@ TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
   double sum = 0.0;
   double max = 0.0;
   Instant last;
-  const auto report =
-      import_csv(in, "finse.csv", {}, {.reading = [&](std::string_view, const wind::WindReading& reading) {
-                   sum += reading.speed_m_s;
-                   max = std::max(max, reading.speed_m_s);
-                   last = reading.time;
-                 }});
+  const auto report = import_csv(in, "finse.csv", {}, {.reading = [&](std::string_view, const wind::Reading& reading) {
+                                   sum += reading.speed_m_s;
+                                   max = std::max(max, reading.speed_m_s);
+                                   last = reading.time;
+                                 }});
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->taken, 18'000U);
   EXPECT_EQ(report->refused(), 0U);

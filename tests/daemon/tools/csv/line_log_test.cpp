@@ -18,19 +18,19 @@ using testing::HasSubstr;
 constexpr UtcTime kEvening{std::chrono::seconds(1'687'730'400)};  // 2023-06-25T22:00:00Z
 
 struct ImportedLog {
-  std::vector<wind::WindReading> readings;
+  std::vector<wind::Reading> readings;
   std::vector<wind::StationQuantities> quantities;
-  CsvImportReport report;
+  ImportReport report;
   std::string failure;
 };
 
 ImportedLog import_log(const std::string& text, const LineLogOptions& options = {}) {
   ImportedLog imported;
   std::istringstream in(text);
-  CsvInput input(in);
+  Input input(in);
   const auto report = import_line_log(
       input, "a.log", options,
-      {.reading = [&](std::string_view, const wind::WindReading& reading) { imported.readings.push_back(reading); },
+      {.reading = [&](std::string_view, const wind::Reading& reading) { imported.readings.push_back(reading); },
        .quantities = [&](std::string_view,
                          const wind::StationQuantities& each) { imported.quantities.push_back(each); }});
   if (report) {
@@ -61,14 +61,14 @@ TEST(LineLog, TimesStandBeforeMessagesInManyWays) {
   for (const char* prefix : {"2023-06-25T22:00:00Z ", "2023-06-25 22:00:00, ", "[2023-06-25 22:00:00.000] ",
                              "1687730400 ", "(1687730400.000) can0 ", "1687730400000;A;", "\\s:x,c:1687730400*00\\",
                              "20230625 220000\t", "2023/06/25,22:00:00,"}) {
-    const auto time = leading_time(prefix, CsvTimeFormat::kAuto);
+    const auto time = leading_time(prefix, TimeFormat::kAuto);
     ASSERT_TRUE(time) << prefix;
     EXPECT_EQ(time->clock, kEvening) << prefix;
   }
   for (const char* prefix : {"", "x ", "12 ", "22:00:00 ", "3/4/2023 22:00 ", "wind: "}) {
-    EXPECT_FALSE(leading_time(prefix, CsvTimeFormat::kAuto)) << prefix;
+    EXPECT_FALSE(leading_time(prefix, TimeFormat::kAuto)) << prefix;
   }
-  EXPECT_TRUE(leading_time("25/06/2023 22:00:00 ", CsvTimeFormat::kDayFirst));
+  EXPECT_TRUE(leading_time("25/06/2023 22:00:00 ", TimeFormat::kDayFirst));
 }
 
 TEST(LineLog, OneSentenceOfSeveralIsTaken) {
@@ -130,7 +130,7 @@ TEST(LineLog, OfHurtLinesEndsWithPlausibleReadingsInOrder) {
     }
     const auto imported = import_log(text);
     MonoTime last{};
-    for (const wind::WindReading& reading : imported.readings) {
+    for (const wind::Reading& reading : imported.readings) {
       EXPECT_TRUE(wind::is_plausible(reading));
       EXPECT_GE(reading.time.mono, last);
       last = reading.time.mono;

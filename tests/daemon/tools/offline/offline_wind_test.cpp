@@ -39,20 +39,20 @@ class SeveralRecorded : public ::testing::Test {
 
   /// The mean speeds of the wind that the recorded sensors make together.
   Means wind_of(const std::vector<std::string>& sensors, const settings::Config& config) const {
-    std::vector<drivers::windlog::WindlogPlayback> playbacks;
+    std::vector<drivers::windlog::Playback> playbacks;
     playbacks.reserve(sensors.size());
     for (const std::string& sensor : sensors) {
-      playbacks.push_back(drivers::windlog::WindlogPlayback::open(file_, {.sensor = sensor}).value());
+      playbacks.push_back(drivers::windlog::Playback::open(file_, {.sensor = sensor}).value());
     }
-    wind::blend::BlendSettings settings = sensing::blend_settings_of(config);
+    wind::blend::Settings settings = sensing::blend_settings_of(config);
     settings.sources.assign(sensors.size(), {.priority = 1});
     settings.rate_hz = 4.0;
     wind::blend::BlendedEstimator estimator(sensors.size(), settings, sensing::make_gust_noise(config));
     Means means;
     std::size_t before = 0;
     std::size_t after = 0;
-    const OfflineWindOptions options{.rate_hz = 4.0, .rules = sensing::jury_rules_of(config.sensors[0])};
-    const auto run = run_offline(playbacks, estimator, options, [&](double time_s, const wind::WindState& state) {
+    const WindOptions options{.rate_hz = 4.0, .rules = sensing::jury_rules_of(config.sensors[0])};
+    const auto run = run_offline(playbacks, estimator, options, [&](double time_s, const wind::State& state) {
       const double speed_m_s = speed_of(state.wind);
       if (time_s >= 60.0 && time_s < 300.0) {
         means.before_m_s += speed_m_s;
@@ -103,11 +103,11 @@ class TwoPlaces : public ::testing::Test {
   };
   Outcome run(bool has_relative_gains) const {
     const settings::Config config = settings::default_config();
-    std::vector<drivers::windlog::WindlogPlayback> playbacks;
+    std::vector<drivers::windlog::Playback> playbacks;
     for (const char* sensor : {"east", "west"}) {
-      playbacks.push_back(drivers::windlog::WindlogPlayback::open(file_, {.sensor = sensor}).value());
+      playbacks.push_back(drivers::windlog::Playback::open(file_, {.sensor = sensor}).value());
     }
-    wind::blend::BlendSettings settings = sensing::blend_settings_of(config);
+    wind::blend::Settings settings = sensing::blend_settings_of(config);
     settings.sources = {{.priority = 1, .has_place = true, .east_m = 7.5},
                         {.priority = 1, .has_place = true, .east_m = -7.5}};
     settings.rate_hz = 4.0;
@@ -115,17 +115,17 @@ class TwoPlaces : public ::testing::Test {
     const auto noise = sensing::make_gust_noise(config);
     wind::blend::BlendedEstimator estimator(2, settings, noise);
     wind::ground::WindTapes tapes;
-    OfflineWindOptions options{.rate_hz = 4.0, .rules = sensing::jury_rules_of(config.sensors[0])};
+    WindOptions options{.rate_hz = 4.0, .rules = sensing::jury_rules_of(config.sensors[0])};
     options.has_relative_gains = has_relative_gains;
     Outcome outcome;
     double count = 0.0;
     double before_m_s = 0.0;
-    const auto result = run_offline(playbacks, estimator, options, [&](double time_s, const wind::WindState& state) {
+    const auto result = run_offline(playbacks, estimator, options, [&](double time_s, const wind::State& state) {
       const double speed_m_s = speed_of(state.wind);
       if (time_s > 60.0)
         outcome.largest_step_m_s = std::max(outcome.largest_step_m_s, std::abs(speed_m_s - before_m_s));
       before_m_s = speed_m_s;
-      const wind::ground::GroundWind ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
+      const wind::ground::Wind ground = written_to(tapes, {state, estimator.ground(), estimator.stroke()});
       if (time_s < kLearning_s - 600.0) return;
       count += 1.0;
       outcome.east_m_s += speed_of(ground.at(*noise, 7.5, 0.0));

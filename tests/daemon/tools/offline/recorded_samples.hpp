@@ -72,7 +72,7 @@ inline double gusty_m_s(double time_s) {
 inline void record_session(const std::filesystem::path& file, UtcTime begin, double duration_s,
                            const std::string& configuration, const std::vector<RecordedWind>& winds,
                            MonoTime mono = MonoTime(std::chrono::hours(1))) {
-  auto writer = drivers::windlog::WindlogWriter::open(file);
+  auto writer = drivers::windlog::Writer::open(file);
   ASSERT_TRUE(writer) << writer.error().message;
   ASSERT_TRUE(writer->begin_session({{mono, begin}, "yuragi 0.2.0", configuration}));
   for (const RecordedWind& wind : winds) {
@@ -81,7 +81,7 @@ inline void record_session(const std::filesystem::path& file, UtcTime begin, dou
     const auto count = static_cast<int>(duration_s / wind.interval_s);
     for (int i = 0; i < count; ++i) {
       const Nanoseconds since = from_seconds(i * wind.interval_s);
-      wind::WindReading reading;
+      wind::Reading reading;
       reading.time = {mono + since, begin + since};
       reading.speed_m_s = wind.speed_m_s(i * wind.interval_s);
       reading.direction_deg = wind.direction_deg;

@@ -28,7 +28,7 @@ DefaultWind wind_of(double speed_m_s, double turbulence_intensity, double length
 
 /// The daemon's own wind of these values of [wind], one reading each kInterval_s; `swing`: the amplitude of a slow
 /// change of the wind's speed besides, over the mean.
-std::vector<wind::WindReading> model_wind(const DefaultWind& values, double swing = 0.0, double swing_period_s = 1.0) {
+std::vector<wind::Reading> model_wind(const DefaultWind& values, double swing = 0.0, double swing_period_s = 1.0) {
   static const auto kNoise = std::make_shared<const wind::turbulence::GustNoise>(wind::turbulence::GustNoiseSettings{});
   wind::blend::BlendedEstimator estimator(0,
                                           {.climate = {.mean_speed_m_s = values.speed_m_s,
@@ -38,22 +38,21 @@ std::vector<wind::WindReading> model_wind(const DefaultWind& values, double swin
                                            .length_m = values.length_m},
                                           kNoise);
   return test::made_readings(
-      static_cast<std::size_t>(kDuration_s / kInterval_s), kInterval_ms,
-      [&](std::size_t i, wind::WindReading& reading) {
+      static_cast<std::size_t>(kDuration_s / kInterval_s), kInterval_ms, [&](std::size_t i, wind::Reading& reading) {
         const double time_s = kInterval_s * static_cast<double>(i);
-        const wind::WindVector slow = wind::wind_from(
+        const wind::Vector slow = wind::wind_from(
             swing * values.speed_m_s * std::sin(2.0 * std::numbers::pi * time_s / swing_period_s), 240.0);
-        const wind::WindVector wind = estimator.advance(MonoTime(from_seconds(1.0 + time_s))).wind + slow;
+        const wind::Vector wind = estimator.advance(MonoTime(from_seconds(1.0 + time_s))).wind + slow;
         reading.speed_m_s = speed_of(wind);
         reading.direction_deg = wind::direction_from_deg(wind);
       });
 }
 
 /// As measured over 10 minutes.
-double block_intensity(const std::vector<wind::WindReading>& readings) {
+double block_intensity(const std::vector<wind::Reading>& readings) {
   TenMinuteBlocks blocks(kInterval_s);
   double time_s = 0.0;
-  for (const wind::WindReading& reading : readings) {
+  for (const wind::Reading& reading : readings) {
     blocks.add(time_s, reading.speed_m_s, {});
     time_s += kInterval_s;
   }

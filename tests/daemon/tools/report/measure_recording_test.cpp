@@ -22,8 +22,8 @@ double lively_m_s(std::size_t i) {
 }
 
 TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
-  auto readings = test::made_readings(
-      600, 1000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  auto readings =
+      test::made_readings(600, 1000, [](std::size_t i, wind::Reading& reading) { reading.speed_m_s = lively_m_s(i); });
   readings.erase(readings.begin() + 100, readings.begin() + 160);
   readings.erase(readings.begin() + 300, readings.begin() + 303);  // too short to be told
   const auto numbers = test::numbers_of(readings);
@@ -46,8 +46,8 @@ TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
 
 TEST(MeasureRecording, ThePausesOfASourceThatSpeaksOnChangeAreNoGaps) {
   // It says something each 2 s, is calm for 50 minutes, speaks again, and is gone for two hours.
-  auto readings = test::made_readings(
-      200, 2000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  auto readings =
+      test::made_readings(200, 2000, [](std::size_t i, wind::Reading& reading) { reading.speed_m_s = lively_m_s(i); });
   for (std::size_t i = 100; i < readings.size(); ++i) {
     readings[i].time = test::at_ms(3'000'000 + 2000 * static_cast<std::int64_t>(i),
                                    test::kSampleUtc_ms + 3'000'000 + 2000 * static_cast<std::int64_t>(i));
@@ -67,7 +67,7 @@ TEST(MeasureRecording, ThePausesOfASourceThatSpeaksOnChangeAreNoGaps) {
 }
 
 TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
-  const auto numbers = test::numbers_of(test::made_readings(200, 1000, [](std::size_t i, wind::WindReading& reading) {
+  const auto numbers = test::numbers_of(test::made_readings(200, 1000, [](std::size_t i, wind::Reading& reading) {
     reading.speed_m_s = 5.0;
     reading.direction_deg = i % 2 == 0 ? 350.0 : 10.0;
   }));
@@ -79,11 +79,10 @@ TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
 
 TEST(MeasureRecording, TheColorsOfTheRoseReachTheStrongestWind) {
   for (const double strongest_m_s : {3.0, 5.9, 6.1, 11.0, 23.0, 47.0}) {
-    const auto numbers =
-        test::numbers_of(test::made_readings(200, 1000, [&](std::size_t i, wind::WindReading& reading) {
-          reading.speed_m_s = strongest_m_s * (0.005 * static_cast<double>(i) + 0.005);
-          reading.direction_deg = 90.0;
-        }));
+    const auto numbers = test::numbers_of(test::made_readings(200, 1000, [&](std::size_t i, wind::Reading& reading) {
+      reading.speed_m_s = strongest_m_s * (0.005 * static_cast<double>(i) + 0.005);
+      reading.direction_deg = 90.0;
+    }));
     const WindRose& rose = numbers.sensors[0].rose;
     EXPECT_LT(strongest_m_s, rose.class_m_s * static_cast<double>(kRoseClasses)) << "in the last class";
     EXPECT_GT(strongest_m_s, 0.5 * rose.class_m_s * static_cast<double>(kRoseClasses - 1)) << rose.class_m_s;
@@ -94,7 +93,7 @@ TEST(MeasureRecording, TheColorsOfTheRoseReachTheStrongestWind) {
 }
 
 TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {
-  const auto numbers = test::numbers_of(test::made_readings(2000, 1000, [](std::size_t i, wind::WindReading& reading) {
+  const auto numbers = test::numbers_of(test::made_readings(2000, 1000, [](std::size_t i, wind::Reading& reading) {
     reading.speed_m_s = i >= 500 && i < 700 ? 7.25 : i == 1000 ? 60.0 : lively_m_s(i);
   }));
   const SensorNumbers& sensor = numbers.sensors[0];
@@ -109,7 +108,7 @@ TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {
 
 TEST(MeasureRecording, GustsAreMeansOfThreeSeconds) {
   // Ten a second; one burst of 1 s is a third of a gust.
-  const auto numbers = test::numbers_of(test::made_readings(6100, 100, [](std::size_t i, wind::WindReading& reading) {
+  const auto numbers = test::numbers_of(test::made_readings(6100, 100, [](std::size_t i, wind::Reading& reading) {
     reading.speed_m_s = 5.0 + 0.01 * static_cast<double>(i % 2) + (i >= 3000 && i < 3010 ? 3.0 : 0.0);
   }));
   const SensorNumbers& sensor = numbers.sensors[0];
@@ -118,17 +117,17 @@ TEST(MeasureRecording, GustsAreMeansOfThreeSeconds) {
   EXPECT_NEAR(*sensor.blocks.gust_factor, 6.005 / 5.01, 1e-3);
 
   // Once in 2 s no gust is seen.
-  const auto slow = test::numbers_of(test::made_readings(
-      100, 2000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); }));
+  const auto slow = test::numbers_of(
+      test::made_readings(100, 2000, [](std::size_t i, wind::Reading& reading) { reading.speed_m_s = lively_m_s(i); }));
   EXPECT_FALSE(slow.sensors[0].gust_3s_m_s);
 }
 
 TEST(MeasureRecording, HoursAreThoseOfTheZone) {
-  ReportSettings settings;
+  Settings settings;
   settings.utc_offset = [](UtcTime) { return Nanoseconds(std::chrono::minutes(330)); };
   // From 14:00 UTC on, for 25 hours, six an hour; the first hour is windy.
   const auto numbers = test::numbers_of(test::made_readings(151, 600'000,
-                                                            [](std::size_t i, wind::WindReading& reading) {
+                                                            [](std::size_t i, wind::Reading& reading) {
                                                               reading.speed_m_s = (i < 6 ? 5.0 : 2.0) +
                                                                                   0.01 * static_cast<double>(i % 5);
                                                             }),
@@ -144,10 +143,9 @@ TEST(MeasureRecording, HoursAreThoseOfTheZone) {
 }
 
 TEST(MeasureRecording, MonthsFitIntoTheSameBinsAndKeepTheirExtremes) {
-  const auto numbers =
-      test::numbers_of(test::made_readings(20'000, 60'000, [](std::size_t i, wind::WindReading& reading) {
-        reading.speed_m_s = i == 12'345 ? 9.5 : lively_m_s(i);
-      }));
+  const auto numbers = test::numbers_of(test::made_readings(20'000, 60'000, [](std::size_t i, wind::Reading& reading) {
+    reading.speed_m_s = i == 12'345 ? 9.5 : lively_m_s(i);
+  }));
   const SensorNumbers& sensor = numbers.sensors[0];
   ASSERT_EQ(sensor.bins.size(), kTimeBins);
   double highest = 0.0;
@@ -162,8 +160,8 @@ TEST(MeasureRecording, MonthsFitIntoTheSameBinsAndKeepTheirExtremes) {
 }
 
 TEST(MeasureRecording, SeesThatTheClockWasSet) {
-  auto readings = test::made_readings(
-      100, 1000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  auto readings =
+      test::made_readings(100, 1000, [](std::size_t i, wind::Reading& reading) { reading.speed_m_s = lively_m_s(i); });
   for (std::size_t i = 50; i < 100; ++i) readings[i].time.utc -= std::chrono::hours(24 * 3650);
   const auto numbers = test::numbers_of(readings);
   EXPECT_EQ(numbers.clock_sets, 1U);
@@ -174,7 +172,7 @@ TEST(MeasureRecording, SeesThatTheClockWasSet) {
 
 TEST(MeasureRecording, AnUnevenPaceIsMadeEven) {
   // Readings of a slow sine at alternating intervals: the spectrum's line is where it belongs.
-  auto readings = test::made_readings(4000, 1000, [](std::size_t i, wind::WindReading& reading) {
+  auto readings = test::made_readings(4000, 1000, [](std::size_t i, wind::Reading& reading) {
     const std::int64_t shift_ms = i % 2 == 0 ? 200 : -200;
     reading.time.mono += std::chrono::milliseconds(shift_ms + 300);
     reading.speed_m_s =
@@ -194,9 +192,9 @@ TEST(MeasureRecording, AnUnevenPaceIsMadeEven) {
 TEST(MeasureRecording, NamesWhatIsThereWhereASensorIsNot) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", test::numbered_readings(3), "roof");
-  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
+  auto reader = drivers::windlog::Reader::open(folder / "a.windlog");
   ASSERT_TRUE(reader);
-  ReportSettings settings;
+  Settings settings;
   settings.sensors = {"rooof"};
   const auto numbers = measure_recording(*reader, settings);
   ASSERT_FALSE(numbers);

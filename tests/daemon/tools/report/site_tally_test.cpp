@@ -21,7 +21,7 @@ std::optional<SiteNumbers> learnt_from(double interval_s) {
   for (double time_s = 0.0; time_s < 1800.0; time_s += interval_s) {
     gust_m_s = kept * gust_m_s + std::sqrt(1.0 - kept * kept) * random.normal(drawn++);
     if (time_s > 600.0 && time_s < 700.0) continue;
-    lesson.add(time_s, 5.0 + gust_m_s, wind::WindVector{0.1 * gust_m_s, 5.0 + gust_m_s});
+    lesson.add(time_s, 5.0 + gust_m_s, wind::Vector{0.1 * gust_m_s, 5.0 + gust_m_s});
   }
   return lesson.numbers();
 }

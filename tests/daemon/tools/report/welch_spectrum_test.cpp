@@ -41,7 +41,7 @@ SpectrumNumbers spectrum_of(const std::vector<double>& along_m_s, double mean_m_
   for (const double value : along_m_s) {
     // From the south-west: as much east as north.
     const double part = (mean_m_s + value) / std::numbers::sqrt2;
-    welch.add({.speed_m_s = std::abs(mean_m_s + value), .wind = wind::WindVector{part, part}});
+    welch.add({.speed_m_s = std::abs(mean_m_s + value), .wind = wind::Vector{part, part}});
   }
   const auto numbers = welch.numbers();
   EXPECT_TRUE(numbers);
@@ -64,7 +64,7 @@ TEST(WelchSpectrum, TheIntegralIsTheVarianceAndASineIsWhereItIs) {
 
 TEST(WelchSpectrum, WhatIsAcrossTheWindIsNotInIt) {
   WelchSpectrum welch(256, kStep_s, false);
-  for (int i = 0; i < 1024; ++i) welch.add({.speed_m_s = 6.0, .wind = wind::WindVector{6.0, i % 2 == 0 ? 1.0 : -1.0}});
+  for (int i = 0; i < 1024; ++i) welch.add({.speed_m_s = 6.0, .wind = wind::Vector{6.0, i % 2 == 0 ? 1.0 : -1.0}});
   const auto numbers = welch.numbers();
   ASSERT_TRUE(numbers);
   for (const double density : numbers->density_m2_s2_hz) EXPECT_NEAR(density, 0.0, 1e-12);

@@ -32,16 +32,13 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   wire::SensorStatus silent;
   silent.name = "mast";
   silent.driver = "modbus";
-  const wire::Sensors sensors{.sensors = {live, silent},
-                              .wind = {.time = {},
-                                       .wind = {5.0, 0.0},
-                                       .source = wind::WindSource::kLive,
-                                       .live_weight = 1.0,
-                                       .reading_age_s = 0.2},
-                              .late_ticks = 40,
-                              .clients = 3,
-                              .recent_ticks = 36'000,
-                              .recent_skipped_ticks = 2};
+  const wire::Sensors sensors{
+      .sensors = {live, silent},
+      .wind = {.time = {}, .wind = {5.0, 0.0}, .source = wind::Source::kLive, .live_weight = 1.0, .reading_age_s = 0.2},
+      .late_ticks = 40,
+      .clients = 3,
+      .recent_ticks = 36'000,
+      .recent_skipped_ticks = 2};
 
   const std::string table = sensor_table(sensors);
   EXPECT_THAT(table, HasSubstr("wind 5.0 m/s from 270 W (live)   clients 3   ticks skipped 2"));
@@ -92,7 +89,7 @@ TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   log.readings = 3;
   wire::Sensors sensors{
       {log},
-      {.time = {}, .wind = {5.0, 0.0}, .source = wind::WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.0},
+      {.time = {}, .wind = {5.0, 0.0}, .source = wind::Source::kLive, .live_weight = 1.0, .reading_age_s = 0.0},
       0,
       0};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("(REPLAY of a recording)"));

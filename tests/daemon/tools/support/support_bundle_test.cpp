@@ -32,12 +32,12 @@ class SupportBundle : public testing::Test {
                    (folder_ / "password").string() + "\"\n" + mqtt +
                    "\"three\"\npassword_env = \"YURAGI_TEST_BUNDLE\"\n";
     write_config(config_text_);
-    auto writer = drivers::windlog::WindlogWriter::open(folder_ / "wall.windlog");
+    auto writer = drivers::windlog::Writer::open(folder_ / "wall.windlog");
     EXPECT_TRUE(writer->begin_session(
         {test::at_ms(0, test::kSampleUtc_ms), "yuragi test", "[[sensor]]\npassword = \"inline-horse\"\n"}));
     const auto sensor = writer->add_sensor("one", "mqtt", "password = 'inline-horse'");
     for (int i = 0; i < 10; ++i) {
-      wind::WindReading reading;
+      wind::Reading reading;
       reading.time = test::at_ms(1000 * i, test::kSampleUtc_ms);
       reading.speed_m_s = 4.25;
       EXPECT_TRUE(writer->append(*sensor, reading));

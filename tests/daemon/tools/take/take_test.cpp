@@ -34,13 +34,13 @@ TEST(TakeMesh, IsWhole_OfEveryKindAndThinness) {
   for (const Sample& sample : every_kind()) {
     for (const std::size_t every : {1U, 2U, 3U, 7U}) {
       SCOPED_TRACE(std::string(sample.name) + " every " + std::to_string(every));
-      const TakeMesh mesh = take_mesh_of(sample.skeleton, every);
+      const Mesh mesh = take_mesh_of(sample.skeleton, every);
       ASSERT_FALSE(mesh.indices.empty());
       EXPECT_EQ(mesh.indices.size() % 3, 0U);
       EXPECT_LT(*std::ranges::max_element(mesh.indices), mesh.vertices.size());
       EXPECT_FALSE(mesh.joints[0].number.has_value()) << "the one that stands still";
       std::vector<bool> is_used(mesh.joints.size(), false);
-      for (const TakeVertex& vertex : mesh.vertices) {
+      for (const Vertex& vertex : mesh.vertices) {
         ASSERT_LT(vertex.joint, mesh.joints.size());
         is_used[vertex.joint] = true;
         for (const float value : vertex.place_m) EXPECT_TRUE(std::isfinite(value));
@@ -51,7 +51,7 @@ TEST(TakeMesh, IsWhole_OfEveryKindAndThinness) {
 }
 TEST(TakeMesh, EachStrandIsARibbonFromItsRoot) {
   const auto strands = samples::meadow(kStrands);
-  const TakeMesh mesh = take_mesh_of(strands, 1);
+  const Mesh mesh = take_mesh_of(strands, 1);
   EXPECT_EQ(mesh.joints.size(), 1 + kStrands * strands.links_per_strand);
   EXPECT_EQ(mesh.vertices.size(), kStrands * 2 * (strands.links_per_strand + 1));
   const auto middle = [&mesh](std::size_t vertex, std::size_t axis) {
@@ -72,7 +72,7 @@ TEST(TakeMesh, EveryWithin_IsEnoughAndNotFarTooMuch) {
   }
 }
 
-tinygltf::Model read_back(const TakeRecorder& take) {
+tinygltf::Model read_back(const Recorder& take) {
   std::ostringstream out;
   take.write_glb(out).value();
   const std::string bytes = out.str();
@@ -99,7 +99,7 @@ float value_of(const tinygltf::Model& model, int accessor, std::size_t index) {
 TEST(TakeRecorder, HoldsWhereEachJointWasInEachPicture) {
   for (const Sample& sample : every_kind()) {
     SCOPED_TRACE(sample.name);
-    TakeRecorder take(sample.skeleton, sample.name, 1, 25.0);
+    Recorder take(sample.skeleton, sample.name, 1, 25.0);
     pose::Pose pose = pose::rest_pose(sample.skeleton);
     ASSERT_TRUE(take.add(pose));
     // What every kind takes: each of its arrays a little further on.
@@ -111,7 +111,7 @@ TEST(TakeRecorder, HoldsWhereEachJointWasInEachPicture) {
     ASSERT_TRUE(kinematics.run(pose));
 
     const tinygltf::Model model = read_back(take);
-    const TakeMesh mesh = take_mesh_of(sample.skeleton, 1);
+    const Mesh mesh = take_mesh_of(sample.skeleton, 1);
     ASSERT_EQ(model.skins.at(0).joints.size(), mesh.joints.size());
     ASSERT_EQ(model.animations.size(), 1U);
     const tinygltf::Animation& animation = model.animations[0];
@@ -135,7 +135,7 @@ TEST(TakeRecorder, HoldsWhereEachJointWasInEachPicture) {
 }
 TEST(TakeRecorder, AStillSceneHasNoAnimation_AndATakeOfNothingIsNone) {
   const pose::Skeleton cloth = samples::cloth();
-  TakeRecorder take(cloth, "cloth", 1, 30.0);
+  Recorder take(cloth, "cloth", 1, 30.0);
   std::ostringstream out;
   EXPECT_FALSE(take.write_glb(out));
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(take.add(pose::rest_pose(cloth)));

@@ -30,7 +30,7 @@ namespace yuragi::wind::blend {
 namespace {
 
 TEST(BlendAllocation, NeitherAReadingNorATickAllocates) {
-  BlendSettings settings = BlendRun::usual();
+  Settings settings = BlendRun::usual();
   settings.sources = {{.priority = 1, .east_m = -5.0},
                       {.priority = 1, .east_m = 5.0, .averaging_s = 10.0},
                       {.priority = 2, .value = ReadingValue::kInstant, .direction_step_deg = 45.0},
@@ -45,7 +45,7 @@ TEST(BlendAllocation, NeitherAReadingNorATickAllocates) {
     now += from_seconds(0.1);
     const bool is_silence = tick > 1000 && tick < 2000;
     for (std::size_t source = 0; source < 4 && !is_silence; ++source) {
-      WindReading reading;
+      Reading reading;
       reading.time.mono = now;
       reading.speed_m_s = 6.0 + std::sin(0.1 * tick + static_cast<double>(source));
       if (source != 3) reading.direction_deg = 45.0 * (tick / 50 % 3);

@@ -22,13 +22,13 @@ inline std::shared_ptr<const turbulence::GustNoise> shared_gust_noise() {
 /// An estimator, and a wind that is read every now and then; time is moved by hand.
 class BlendRun {
  public:
-  explicit BlendRun(std::size_t sources, const BlendSettings& settings)
+  explicit BlendRun(std::size_t sources, const Settings& settings)
       : estimator_(sources, settings, shared_gust_noise()) {
     state_ = estimator_.advance(now_);
   }
 
   /// A climate of 4 m/s from south.
-  static BlendSettings usual(std::uint64_t seed = 1, double turbulence_intensity = 0.2) {
+  static Settings usual(std::uint64_t seed = 1, double turbulence_intensity = 0.2) {
     return {.climate = {.mean_speed_m_s = 4.0,
                         .mean_direction_deg = 180.0,
                         .turbulence_intensity = turbulence_intensity,
@@ -36,12 +36,12 @@ class BlendRun {
   }
 
   MonoTime now() const { return now_; }
-  WindState state() const { return state_; }
+  State state() const { return state_; }
   BlendedEstimator& estimator() { return estimator_; }
   SourceReport report(std::size_t source = 0) const { return estimator_.report(source); }
 
   bool read(double speed_m_s, std::optional<double> direction_deg, std::size_t source = 0) {
-    WindReading reading;
+    Reading reading;
     reading.time.mono = now_;
     reading.speed_m_s = speed_m_s;
     reading.direction_deg = direction_deg;
@@ -49,11 +49,11 @@ class BlendRun {
   }
 
   /// Goes on for so long; `each` is called at each tick.
-  void run_for(double duration_s, const std::function<void(const WindState&)>& each = {}) {
+  void run_for(double duration_s, const std::function<void(const State&)>& each = {}) {
     const auto ticks = static_cast<int>(std::lround(duration_s / kBlendTick_s));
     for (int tick = 0; tick < ticks; ++tick) {
       now_ += from_seconds(kBlendTick_s);
-      const WindVector before = state_.wind;
+      const Vector before = state_.wind;
       state_ = estimator_.advance(now_);
       largest_step_m_s_ = std::max(largest_step_m_s_, speed_of(state_.wind - before));
       if (each) each(state_);
@@ -61,7 +61,7 @@ class BlendRun {
   }
 
   void read_for(double duration_s, double interval_s, double speed_m_s, std::optional<double> direction_deg,
-                std::size_t source = 0, const std::function<void(const WindState&)>& each = {}) {
+                std::size_t source = 0, const std::function<void(const State&)>& each = {}) {
     const auto readings = static_cast<int>(std::lround(duration_s / interval_s));
     for (int i = 0; i < readings; ++i) {
       read(speed_m_s, direction_deg, source);
@@ -77,22 +77,22 @@ class BlendRun {
  private:
   BlendedEstimator estimator_;
   MonoTime now_{std::chrono::hours(1)};
-  WindState state_;
+  State state_;
   double largest_step_m_s_ = 0.0;
 };
 
 /// Mean, and variance about it, of the states of a while.
 struct BlendMoments {
-  WindVector sum{};
+  Vector sum{};
   double squares_u = 0.0, squares_v = 0.0;
   int count = 0;
-  void add(const WindState& state) {
+  void add(const State& state) {
     sum = sum + state.wind;
     squares_u += state.wind.u_m_s * state.wind.u_m_s;
     squares_v += state.wind.v_m_s * state.wind.v_m_s;
     ++count;
   }
-  WindVector mean() const { return (1.0 / count) * sum; }
+  Vector mean() const { return (1.0 / count) * sum; }
   double variance_u() const { return squares_u / count - mean().u_m_s * mean().u_m_s; }
   double variance_v() const { return squares_v / count - mean().v_m_s * mean().v_m_s; }
   double variance() const { return variance_u() + variance_v(); }

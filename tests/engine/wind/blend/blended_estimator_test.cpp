@@ -42,8 +42,8 @@ TEST(BlendedEstimator, WithoutASensorIsTheClimate) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     Blend blend = usual_blend(seed);
     Moments moments;
-    blend.run_for(600.0, [&](const WindState& state) { moments.add(state); });
-    EXPECT_EQ(blend.state().source, WindSource::kDefault);
+    blend.run_for(600.0, [&](const State& state) { moments.add(state); });
+    EXPECT_EQ(blend.state().source, Source::kDefault);
     EXPECT_EQ(blend.state().live_weight, 0.0);
     mean += moments.mean().v_m_s / kSeeds;
     variance += moments.variance() / kSeeds;
@@ -57,13 +57,13 @@ TEST(BlendedEstimator, FollowsASteadySensorAndMovesAboutIt) {
   Moments moments;
   for (int i = 0; i < 120; ++i) {
     blend.read(8.0, 270.0);
-    blend.run_for(1.0, [&](const WindState& state) {
+    blend.run_for(1.0, [&](const State& state) {
       if (i > 20) moments.add(state);
     });
   }
   EXPECT_NEAR(moments.mean().u_m_s, 8.0, 0.2);
   EXPECT_NEAR(moments.mean().v_m_s, 0.0, 0.2);
-  EXPECT_EQ(blend.state().source, WindSource::kLive);
+  EXPECT_EQ(blend.state().source, Source::kLive);
   EXPECT_GT(blend.state().live_weight, 0.99);
 }
 
@@ -80,7 +80,7 @@ TEST(BlendedEstimator, GustsDoNotBurstWhenWindRisesOutOfACalm) {
   for (const double interval_s : {1.0, 14.0}) {
     Blend blend = usual_blend();
     TestGusts gusts(3);
-    const auto read_gusts = [&](double duration_s, const std::function<void(const WindState&)>& each) {
+    const auto read_gusts = [&](double duration_s, const std::function<void(const State&)>& each) {
       for (double time_s = 0.0; time_s < duration_s; time_s += interval_s) {
         blend.read(5.0 * std::max(0.1, 1.0 + 0.2 * gusts.next()), 180.0);
         blend.run_for(interval_s, each);
@@ -91,7 +91,7 @@ TEST(BlendedEstimator, GustsDoNotBurstWhenWindRisesOutOfACalm) {
     // Of 5 m/s and a fifth of it: 1 m/s; what the fit makes of the front itself is not much more than the front.
     double strongest_m_s = 0.0;
     double fastest_m_s = 0.0;
-    read_gusts(420.0, [&](const WindState& state) {
+    read_gusts(420.0, [&](const State& state) {
       strongest_m_s = std::max(strongest_m_s, gusts_along_m_s(blend));
       fastest_m_s = std::max(fastest_m_s, speed_of(state.wind));
     });
@@ -116,9 +116,9 @@ TEST(BlendedEstimator, BeginsWithTheSpeedOfTheFirstReading) {
     double least_trust = 1.0;
     blend.run_for(4.0);
     if (interval_s > 3.0) {
-      blend.run_for(6.0, [&](const WindState& state) { least_trust = std::min(least_trust, state.live_weight); });
+      blend.run_for(6.0, [&](const State& state) { least_trust = std::min(least_trust, state.live_weight); });
       blend.read(9.0, 270.0);
-      blend.run_for(14.0, [&](const WindState& state) { least_trust = std::min(least_trust, state.live_weight); });
+      blend.run_for(14.0, [&](const State& state) { least_trust = std::min(least_trust, state.live_weight); });
       EXPECT_GT(least_trust, 0.98);
     }
     // A critically damped way of 6 m/s: 0.37 * 6 * 4 / 3 s, in a tick.
@@ -129,7 +129,7 @@ TEST(BlendedEstimator, BeginsWithTheSpeedOfTheFirstReading) {
 TEST(BlendedEstimator, ASourceHasTheGustsOfItsOwnLength) {
   // In a steady wind nothing is learnt of the gusts: they are what they are taken for.
   for (const double length_m : {0.0, 25.0, 85.0}) {
-    BlendSettings settings = Blend::usual();
+    Settings settings = Blend::usual();
     settings.length_m = 40.0;
     settings.sources = {{.length_m = length_m}};
     Blend blend(1, settings);
@@ -141,13 +141,13 @@ TEST(BlendedEstimator, ASourceHasTheGustsOfItsOwnLength) {
 
 TEST(BlendedEstimator, WhatWasSaidBeforeItWasAskedIsTheWindAtOnce) {
   BlendedEstimator estimator(1, Blend::usual(1, 0.0), shared_gust_noise());
-  WindReading reading;
+  Reading reading;
   reading.time.mono = MonoTime(std::chrono::hours(1));
   reading.speed_m_s = 9.0;
   reading.direction_deg = 270.0;
   ASSERT_TRUE(estimator.accept(0, reading));
-  const WindState state = estimator.advance(reading.time.mono);
-  EXPECT_EQ(state.source, WindSource::kLive);
+  const State state = estimator.advance(reading.time.mono);
+  EXPECT_EQ(state.source, Source::kLive);
   EXPECT_EQ(state.live_weight, 1.0);
   EXPECT_NEAR(state.wind.u_m_s, 9.0, 0.01);
   EXPECT_NEAR(state.wind.v_m_s, 0.0, 0.01);
@@ -162,7 +162,7 @@ TEST(BlendedEstimator, PassesThroughNorthAndNotThroughSouth) {
   double furthest_from_north_deg = 0.0;
   for (int i = 0; i < 60; ++i) {
     blend.read(6.0, 10.0);
-    blend.run_for(1.0, [&](const WindState& state) {
+    blend.run_for(1.0, [&](const State& state) {
       const double from_deg = direction_from_deg(state.wind);
       furthest_from_north_deg = std::max(furthest_from_north_deg, std::min(from_deg, 360.0 - from_deg));
     });
@@ -210,7 +210,7 @@ TEST(BlendedEstimator, GoesOnMovingWhileTheSensorIsSilent) {
     }
     blend.run_for(30.0);
     Moments silent;
-    blend.run_for(100.0, [&](const WindState& state) { silent.add(state); });
+    blend.run_for(100.0, [&](const State& state) { silent.add(state); });
     variance += silent.variance() / kSeeds;
   }
   // A steady sensor has told of little turbulence; the climate's returns.
@@ -226,7 +226,7 @@ TEST(BlendedEstimator, FadesIntoTheClimateOverTheMeansMemory) {
   blend.run_for(3600.0);
   EXPECT_LT(blend.state().live_weight, 0.01);
   Moments moments;
-  blend.run_for(600.0, [&](const WindState& state) { moments.add(state); });
+  blend.run_for(600.0, [&](const State& state) { moments.add(state); });
   EXPECT_NEAR(moments.mean().v_m_s, 4.0, 0.6);
   EXPECT_NEAR(moments.mean().u_m_s, 0.0, 0.6);
 }
@@ -255,7 +255,7 @@ TEST(BlendedEstimator, IsFiniteAndBoundedWhateverComesIn) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Blend blend = usual_blend(seed, 2);
     for (int i = 0; i < 600; ++i) {
-      WindReading reading;
+      Reading reading;
       const auto jump_s = static_cast<double>(random() % 7) - 2.0;
       reading.time.mono = blend.now() + from_seconds(jump_s);
       reading.time.utc = UtcTime(std::chrono::hours(24 * static_cast<int>(random() % 8000)));
@@ -263,7 +263,7 @@ TEST(BlendedEstimator, IsFiniteAndBoundedWhateverComesIn) {
       if (random() % 3 != 0) reading.direction_deg = static_cast<double>(random() % 360);
       if (random() % 50 == 0) reading.direction_deg = std::nan("");
       blend.estimator().accept(random() % 3, reading);
-      blend.run_for(kBlendTick_s * static_cast<double>(1 + random() % 60), [](const WindState& state) {
+      blend.run_for(kBlendTick_s * static_cast<double>(1 + random() % 60), [](const State& state) {
         ASSERT_TRUE(std::isfinite(state.wind.u_m_s) && std::isfinite(state.wind.v_m_s));
         ASSERT_LE(speed_of(state.wind), kMaxPlausibleSpeed_m_s * (1.0 + 1e-9));
         ASSERT_GE(state.live_weight, 0.0);
@@ -285,7 +285,7 @@ TEST(BlendedEstimator, WhatIsHeldIsNeitherSilenceNorSomethingToLearn) {
     }
     const double learnt = blend.estimator().turbulence().intensity;
     for (int i = 0; i < 600; ++i) {
-      WindReading reading;
+      Reading reading;
       reading.time.mono = blend.now();
       reading.speed_m_s = 6.0;
       reading.direction_deg = 90.0;
@@ -304,8 +304,8 @@ TEST(BlendedEstimator, TimeThatGoesBackChangesNothing) {
   Blend blend = usual_blend();
   blend.read(5.0, 90.0);
   blend.run_for(5.0);
-  const WindState before = blend.state();
-  const WindState after = blend.estimator().advance(blend.now() - std::chrono::hours(87600));
+  const State before = blend.state();
+  const State after = blend.estimator().advance(blend.now() - std::chrono::hours(87600));
   EXPECT_EQ(after.wind.u_m_s, before.wind.u_m_s);
   EXPECT_EQ(after.time, before.time);
 }
@@ -328,7 +328,7 @@ TEST(BlendedEstimator, TheSameReadingsGiveTheSameWind) {
 TEST(BlendedEstimator, IsTheDefaultWindWhileNoSensorSpeaks) {
   Blend blend = calm_blend();
   blend.run_for(10.0);
-  EXPECT_EQ(blend.state().source, WindSource::kDefault);
+  EXPECT_EQ(blend.state().source, Source::kDefault);
   EXPECT_NEAR(blend.state().wind.u_m_s, 3.0, 0.01);
   EXPECT_NEAR(blend.state().wind.v_m_s, 0.0, 0.01);
   EXPECT_EQ(blend.report().health, SourceHealth::kSilent);
@@ -337,7 +337,7 @@ TEST(BlendedEstimator, IsTheDefaultWindWhileNoSensorSpeaks) {
 TEST(BlendedEstimator, ComesToWhatTheSensorSays) {
   Blend blend = calm_blend();
   blend.read_for(20.0, 1.0, 8.0, 180.0);
-  EXPECT_EQ(blend.state().source, WindSource::kLive);
+  EXPECT_EQ(blend.state().source, Source::kLive);
   EXPECT_NEAR(blend.state().wind.u_m_s, 0.0, 0.05);
   EXPECT_NEAR(blend.state().wind.v_m_s, 8.0, 0.05);
   EXPECT_EQ(blend.report().health, SourceHealth::kLive);
@@ -395,7 +395,7 @@ TEST(BlendedEstimator, AloneATurnFrom350To10DegreesPassesThroughNorth) {
   blend.read_for(60.0, 1.0, 6.0, 350.0);
   double furthest_from_north_deg = 0.0;
   double least_m_s = 6.0;
-  blend.read_for(60.0, 1.0, 6.0, 10.0, 0, [&](const WindState& state) {
+  blend.read_for(60.0, 1.0, 6.0, 10.0, 0, [&](const State& state) {
     const double from_deg = std::remainder(direction_from_deg(state.wind), 360.0);
     furthest_from_north_deg = std::max(furthest_from_north_deg, std::abs(from_deg));
     least_m_s = std::min(least_m_s, speed_of(state.wind));
@@ -407,18 +407,18 @@ TEST(BlendedEstimator, AloneATurnFrom350To10DegreesPassesThroughNorth) {
 // A critically damped step of e moves at most 0.37 e w a second: here 11 m/s, w = 4 / 3 s.
 TEST(BlendedEstimator, LossAndReturnHandOverWithoutAJump) {
   constexpr double kMaxStep_m_s = 0.37 * (4.0 / 3.0) * 11.0 * kBlendTick_s * 1.1;
-  BlendSettings settings = Blend::usual(1, 0.0);
+  Settings settings = Blend::usual(1, 0.0);
   settings.mean_memory_s = 60.0;
   Blend blend(1, settings);
   blend.read_for(100.0, 0.5, 8.0, 90.0);
   blend.take_largest_step_m_s();
   blend.run_for(600.0);
-  EXPECT_EQ(blend.state().source, WindSource::kDefault);
+  EXPECT_EQ(blend.state().source, Source::kDefault);
   EXPECT_NEAR(blend.state().wind.v_m_s, 4.0, 0.05);
   EXPECT_LT(blend.take_largest_step_m_s(), kMaxStep_m_s);
 
   blend.read_for(100.0, 0.5, 8.0, 90.0);
-  EXPECT_EQ(blend.state().source, WindSource::kLive);
+  EXPECT_EQ(blend.state().source, Source::kLive);
   EXPECT_NEAR(blend.state().wind.u_m_s, -8.0, 0.1);
   EXPECT_LT(blend.take_largest_step_m_s(), kMaxStep_m_s);
 }
@@ -460,14 +460,14 @@ TEST(BlendedEstimator, RefusesWhatNoWindCanBe) {
   EXPECT_FALSE(blend.read(500.0, 90.0));
   EXPECT_FALSE(blend.read(5.0, std::numeric_limits<double>::infinity()));
   EXPECT_FALSE(blend.read(5.0, 360.0));
-  EXPECT_FALSE(blend.estimator().accept(1, WindReading{})) << "there is no source 1";
+  EXPECT_FALSE(blend.estimator().accept(1, Reading{})) << "there is no source 1";
   EXPECT_EQ(blend.report().health, SourceHealth::kSilent);
 }
 
 TEST(BlendedEstimator, ALongHaltOfTheMachineLeavesItFinite) {
   Blend blend = calm_blend();
   blend.read_for(5.0, 0.1, 8.0, 180.0);
-  const WindVector before = blend.state().wind;
+  const Vector before = blend.state().wind;
   blend.halt_for(std::chrono::hours(87600));
   blend.run_for(kBlendTick_s);
   EXPECT_LT(speed_of(blend.state().wind - before), 0.1) << "it goes on from where it was";
@@ -475,7 +475,7 @@ TEST(BlendedEstimator, ALongHaltOfTheMachineLeavesItFinite) {
   blend.run_for(30.0);
   EXPECT_NEAR(blend.state().wind.u_m_s, 3.0, 0.01);
   EXPECT_NEAR(blend.state().wind.v_m_s, 0.0, 0.01);
-  EXPECT_EQ(blend.state().source, WindSource::kDefault);
+  EXPECT_EQ(blend.state().source, Source::kDefault);
 }
 
 }  // namespace

@@ -19,19 +19,19 @@ constexpr double kReach_m = 30.0;
 /// An estimator, and tapes that hear each of its ticks.
 class PlacedBlend {
  public:
-  PlacedBlend(const std::vector<BlendSourceSettings>& sources, double turbulence_intensity, std::uint64_t seed = 1)
+  PlacedBlend(const std::vector<SourceSettings>& sources, double turbulence_intensity, std::uint64_t seed = 1)
       : run(sources.size(), settings(sources, turbulence_intensity, seed)) {
     take(run.state());
   }
 
-  void run_for(double duration_s, const std::function<void(const ground::GroundWind&)>& each = {}) {
-    run.run_for(duration_s, [&](const WindState& state) {
+  void run_for(double duration_s, const std::function<void(const ground::Wind&)>& each = {}) {
+    run.run_for(duration_s, [&](const State& state) {
       take(state);
       if (each) each(ground);
     });
   }
   void read_for(double duration_s, double speed_m_s, double direction_deg,
-                const std::function<void(const ground::GroundWind&)>& each = {}) {
+                const std::function<void(const ground::Wind&)>& each = {}) {
     for (int i = 0; i < static_cast<int>(duration_s); ++i) {
       run.read(speed_m_s, direction_deg);
       run_for(1.0, each);
@@ -40,27 +40,27 @@ class PlacedBlend {
 
   const ground::WindPen& pen(std::size_t index) { return run.estimator().stroke().pens[index]; }
   const ground::WindStroke& stroke() { return run.estimator().stroke(); }
-  WindVector at(double east_m, double south_m) const { return ground.at(*shared_gust_noise(), east_m, south_m); }
+  Vector at(double east_m, double south_m) const { return ground.at(*shared_gust_noise(), east_m, south_m); }
 
   BlendRun run;
-  ground::GroundWind ground;
+  ground::Wind ground;
 
  private:
-  static BlendSettings settings(const std::vector<BlendSourceSettings>& sources, double turbulence_intensity,
-                                std::uint64_t seed) {
-    BlendSettings settings = BlendRun::usual(seed, turbulence_intensity);
+  static Settings settings(const std::vector<SourceSettings>& sources, double turbulence_intensity,
+                           std::uint64_t seed) {
+    Settings settings = BlendRun::usual(seed, turbulence_intensity);
     settings.reach_m = kReach_m;
     settings.sources = sources;
     return settings;
   }
-  void take(const WindState& state) {
+  void take(const State& state) {
     ground = written_to(tapes_, {state, run.estimator().ground(), run.estimator().stroke()});
   }
 
   ground::WindTapes tapes_;
 };
 
-BlendSourceSettings placed_source(double east_m, double south_m = 0.0, int priority = 1) {
+SourceSettings placed_source(double east_m, double south_m = 0.0, int priority = 1) {
   return {.priority = priority, .has_place = true, .east_m = east_m, .south_m = south_m};
 }
 
@@ -68,7 +68,7 @@ TEST(BlendedPlaces, WhoIsNotToldItsPlaceStandsAtTheWindwardEdge) {
   PlacedBlend blend({{}}, 0.0);
   for (const double from_deg : {180.0, 270.0, 45.0}) {
     blend.read_for(400.0, 5.0, from_deg);
-    const WindVector from = wind_from(1.0, from_deg);
+    const Vector from = wind_from(1.0, from_deg);
     ASSERT_EQ(blend.stroke().pen_count, 1U);
     // The mean forgets the wind before within some times 100 s.
     EXPECT_NEAR(blend.pen(0).east_m, -kReach_m * from.u_m_s, 0.8) << from_deg;
@@ -85,7 +85,7 @@ TEST(BlendedPlaces, TheEdgeGoesRoundWithoutALeapWhenTheWindTurns) {
   blend.read_for(200.0, 5.0, 180.0);
   double east_m = blend.pen(0).east_m;
   double south_m = blend.pen(0).south_m;
-  blend.read_for(100.0, 5.0, 10.0, [&](const ground::GroundWind&) {
+  blend.read_for(100.0, 5.0, 10.0, [&](const ground::Wind&) {
     ASSERT_LT(std::hypot(blend.pen(0).east_m - east_m, blend.pen(0).south_m - south_m), 0.6);
     east_m = blend.pen(0).east_m;
     south_m = blend.pen(0).south_m;
@@ -94,7 +94,7 @@ TEST(BlendedPlaces, TheEdgeGoesRoundWithoutALeapWhenTheWindTurns) {
 }
 
 TEST(BlendedPlaces, WhoIsToldItsPlaceStandsThereOrUpwindOfItByItsLead) {
-  BlendSourceSettings source = placed_source(3.0, -8.0);
+  SourceSettings source = placed_source(3.0, -8.0);
   source.lead_m = 12.0;
   PlacedBlend blend({source}, 0.0);
   blend.read_for(300.0, 4.0, 180.0);
@@ -116,14 +116,14 @@ TEST(BlendedPlaces, WhoIsToldItsPlaceStandsThereOrUpwindOfItByItsLead) {
 
 TEST(BlendedPlaces, TheWindThatIsShownIsThatOfTheGroundAtThePen) {
   for (const bool is_placed : {false, true}) {
-    PlacedBlend blend({is_placed ? placed_source(5.0, 3.0) : BlendSourceSettings{}}, 0.3, 4);
+    PlacedBlend blend({is_placed ? placed_source(5.0, 3.0) : SourceSettings{}}, 0.3, 4);
     TestGusts gusts(2);
     for (int second = 0; second < 120; ++second) {
       if (second < 60 || second > 80) blend.run.read(std::max(0.1, 6.0 + 1.5 * gusts.next()), 200.0);
-      blend.run_for(1.0, [&](const ground::GroundWind&) {
+      blend.run_for(1.0, [&](const ground::Wind&) {
         // While it begins to be heard, the table of what is kept lags by half a second.
         if (second < 2) return;
-        const WindVector there = blend.at(blend.pen(0).east_m, blend.pen(0).south_m);
+        const Vector there = blend.at(blend.pen(0).east_m, blend.pen(0).south_m);
         ASSERT_NEAR(there.u_m_s, blend.run.state().wind.u_m_s, 1e-5) << second;
         ASSERT_NEAR(there.v_m_s, blend.run.state().wind.v_m_s, 1e-5) << second;
       });
@@ -138,10 +138,10 @@ TEST(BlendedPlaces, AConstantWindIsConstantEverywhere) {
   for (int second = 0; second < 120; ++second) {
     blend.run.read(4.0, 180.0, 0);
     blend.run.read(4.0, 180.0, 1);
-    blend.run_for(1.0, [&](const ground::GroundWind&) {
+    blend.run_for(1.0, [&](const ground::Wind&) {
       for (const double east_m : {-30.0, 0.0, 10.0, 25.0}) {
         for (const double south_m : {-30.0, 5.0, 30.0}) {
-          largest_m_s = std::max(largest_m_s, speed_of(blend.at(east_m, south_m) - WindVector{0.0, 4.0}));
+          largest_m_s = std::max(largest_m_s, speed_of(blend.at(east_m, south_m) - Vector{0.0, 4.0}));
         }
       }
     });
@@ -150,7 +150,7 @@ TEST(BlendedPlaces, AConstantWindIsConstantEverywhere) {
 }
 
 TEST(BlendedPlaces, CalmStaysCalmExactly) {
-  BlendSettings settings = BlendRun::usual(1, 0.2);
+  Settings settings = BlendRun::usual(1, 0.2);
   settings.climate.mean_speed_m_s = 0.0;
   settings.reach_m = kReach_m;
   settings.sources = {{}, placed_source(10.0)};
@@ -159,8 +159,8 @@ TEST(BlendedPlaces, CalmStaysCalmExactly) {
   for (int second = 0; second < 60; ++second) {
     run.read(0.0, 90.0, 0);
     run.read(0.0, std::nullopt, 1);
-    run.run_for(1.0, [&](const WindState& state) {
-      const ground::GroundWind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
+    run.run_for(1.0, [&](const State& state) {
+      const ground::Wind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
       ASSERT_EQ(speed_of(state.wind), 0.0);
       for (const double at_m : {-30.0, 0.0, 17.0}) ASSERT_EQ(speed_of(ground.at(*shared_gust_noise(), at_m, 9.0)), 0.0);
     });
@@ -188,7 +188,7 @@ TEST(BlendedPlaces, AReadingThatIsNoNumberDisturbsNoPlace) {
 }
 
 TEST(BlendedPlaces, AMicrophoneWritesWhereTheAnemometerStandsWhoseGustsItFills) {
-  BlendSourceSettings microphone = placed_source(-25.0, 0.0, 2);
+  SourceSettings microphone = placed_source(-25.0, 0.0, 2);
   microphone.is_relative = true;
   PlacedBlend blend({placed_source(8.0), microphone}, 0.2);
   TestGusts gusts(3);
@@ -220,7 +220,7 @@ TEST(BlendedPlaces, TwoOfOneRankEachHaveTheirOwnGustsWhereTheyStand) {
   for (int second = 0; second < 400; ++second) {
     blend.run.read(6.0 + std::sin(2.0 * std::numbers::pi * second / 20.0), 180.0, 0);
     blend.run.read(6.0, 180.0, 1);
-    blend.run_for(1.0, [&](const ground::GroundWind& ground) {
+    blend.run_for(1.0, [&](const ground::Wind& ground) {
       if (second < 200) return;
       west_m_s = std::max(west_m_s, std::abs(ground.measured_at(-40.0, 0.0).v_m_s - 6.0));
       east_m_s = std::max(east_m_s, std::abs(ground.measured_at(40.0, 0.0).v_m_s - 6.0));
@@ -236,20 +236,19 @@ TEST(BlendedPlaces, TwoOfOneRankEachHaveTheirOwnGustsWhereTheyStand) {
 
 /// The largest step from tick to tick at some places, while two sensors at two places swing differently, and one of
 /// them speaks when `speaks` says so.
-double largest_step_m_s(const std::vector<BlendSourceSettings>& sources,
-                        const std::function<bool(int second)>& speaks) {
+double largest_step_m_s(const std::vector<SourceSettings>& sources, const std::function<bool(int second)>& speaks) {
   PlacedBlend blend(sources, 0.2);
-  const std::vector<WindVector> places = {{-15.0, 0.0}, {15.0, 0.0}, {0.0, -20.0}, {0.0, 0.0}};
-  std::vector<WindVector> before(places.size());
+  const std::vector<Vector> places = {{-15.0, 0.0}, {15.0, 0.0}, {0.0, -20.0}, {0.0, 0.0}};
+  std::vector<Vector> before(places.size());
   double largest_m_s = 0.0;
   for (int second = 0; second < 330; ++second) {
     const double slow_m_s = 2.0 * std::sin(2.0 * std::numbers::pi * second / 800.0);
     const double quick_m_s = 0.5 * std::sin(2.0 * std::numbers::pi * second / 17.0);
     if (speaks(second)) blend.run.read(7.0 + slow_m_s + quick_m_s, 180.0, 0);
     blend.run.read(7.0 - slow_m_s + quick_m_s, 180.0, 1);
-    blend.run_for(1.0, [&](const ground::GroundWind& ground) {
+    blend.run_for(1.0, [&](const ground::Wind& ground) {
       for (std::size_t i = 0; i < places.size(); ++i) {
-        const WindVector now = ground.measured_at(places[i].u_m_s, places[i].v_m_s);
+        const Vector now = ground.measured_at(places[i].u_m_s, places[i].v_m_s);
         if (second > 150) largest_m_s = std::max(largest_m_s, speed_of(now - before[i]));
         before[i] = now;
       }
@@ -266,7 +265,7 @@ bool is_there(int second) {
 }
 
 TEST(BlendedPlaces, OneOfTwoThatComesOrGoesMovesNoPlaceByALeap) {
-  const std::vector<BlendSourceSettings> sources = {placed_source(-15.0), placed_source(15.0)};
+  const std::vector<SourceSettings> sources = {placed_source(-15.0), placed_source(15.0)};
   const double normal_m_s = largest_step_m_s(sources, [](int) { return true; });
   EXPECT_LT(normal_m_s, 0.02);
   EXPECT_LT(largest_step_m_s(sources, is_there), kMaxChange_m_s + normal_m_s);
@@ -282,7 +281,7 @@ TEST(BlendedPlaces, AGustComesLaterTheFartherDownwindAPlaceIs) {
   std::vector<double> arrived_s(3, 0.0);
   const std::vector<double> south_m = {30.0, 10.0, -20.0};
   double time_s = 0.0;
-  blend.read_for(20.0, 8.0, 180.0, [&](const ground::GroundWind& ground) {
+  blend.read_for(20.0, 8.0, 180.0, [&](const ground::Wind& ground) {
     time_s += kBlendTick_s;
     for (std::size_t i = 0; i < south_m.size(); ++i) {
       if (arrived_s[i] == 0.0 && ground.measured_at(0.0, south_m[i]).v_m_s > 6.0) arrived_s[i] = time_s;

@@ -14,8 +14,8 @@ namespace yuragi::wind::blend {
 namespace {
 
 /// No noise worth speaking of, and these sources.
-BlendSettings without_noise(std::vector<BlendSourceSettings> sources) {
-  BlendSettings settings = BlendRun::usual(1, 0.0);
+Settings without_noise(std::vector<SourceSettings> sources) {
+  Settings settings = BlendRun::usual(1, 0.0);
   settings.sources = std::move(sources);
   return settings;
 }
@@ -39,7 +39,7 @@ TEST(BlendedSources, OneThatKnowsABandIsNotDilutedByOneThatDoesNot) {
     const double gust_m_s = 2.0 * std::sin(2.0 * std::numbers::pi * second / 20.0);
     run.read(8.0 + gust_m_s, 180.0, 0);
     if (second % 60 == 0) run.read(8.0, 180.0, 1);
-    run.run_for(1.0, [&](const WindState& state) {
+    run.run_for(1.0, [&](const State& state) {
       if (second > 600) largest_m_s = std::max(largest_m_s, state.wind.v_m_s);
     });
   }
@@ -63,7 +63,7 @@ class WithMicrophone {
         since_ = second_;
       }
       if (microphone_sends) run.read(0.4 * true_m_s, std::nullopt, 1);
-      run.run_for(1.0, [&](const WindState& state) {
+      run.run_for(1.0, [&](const State& state) {
         moments.add(state);
         together_ += (state.wind.v_m_s - 8.0) * (true_m_s - 8.0);
         truth_ += (true_m_s - 8.0) * (true_m_s - 8.0);
@@ -81,8 +81,8 @@ class WithMicrophone {
   BlendMoments moments;
 
  private:
-  static BlendSettings settings(std::uint64_t seed) {
-    BlendSettings settings = BlendRun::usual(seed);
+  static Settings settings(std::uint64_t seed) {
+    Settings settings = BlendRun::usual(seed);
     settings.sources = {{}, {.is_relative = true}};
     return settings;
   }
@@ -125,12 +125,12 @@ TEST(BlendedSources, WithoutTheMicrophoneTheGustsAreNoiseAgain) {
 }
 
 TEST(BlendedSources, AMicrophoneAloneIsTakenAsItIs) {
-  BlendSettings settings = BlendRun::usual(1, 0.0);
+  Settings settings = BlendRun::usual(1, 0.0);
   settings.sources = {{.is_relative = true}};
   BlendRun run(1, settings);
   run.read_for(60.0, 1.0, 5.0, 90.0);
   EXPECT_NEAR(run.state().wind.u_m_s, -5.0, 0.1);
-  EXPECT_EQ(run.state().source, WindSource::kLive);
+  EXPECT_EQ(run.state().source, Source::kLive);
 }
 
 TEST(BlendedSources, AFlappingSensorDoesNotMakeTheWindFlap) {
@@ -153,7 +153,7 @@ TEST(BlendedSources, AFlappingSensorDoesNotMakeTheWindFlap) {
     for (int second = 0; second < 16; ++second) {
       if (second < 8) run.read(9.0, 180.0, 0);
       run.read(5.0, 180.0, 1);
-      run.run_for(1.0, [&](const WindState& state) {
+      run.run_for(1.0, [&](const State& state) {
         lowest = std::min(lowest, state.wind.v_m_s);
         highest = std::max(highest, state.wind.v_m_s);
       });
@@ -170,10 +170,10 @@ TEST(BlendedSources, AlongAWallTheWindIsInterpolated) {
     run.read(8.0, 270.0, 1);
     run.run_for(1.0);
   }
-  const ground::GroundWind& ground = run.estimator().ground();
-  const WindVector west = ground.smooth_at(-10.0, 0.0);
-  const WindVector middle = ground.smooth_at(0.0, 0.0);
-  const WindVector east = ground.smooth_at(10.0, 3.0);
+  const ground::Wind& ground = run.estimator().ground();
+  const Vector west = ground.smooth_at(-10.0, 0.0);
+  const Vector middle = ground.smooth_at(0.0, 0.0);
+  const Vector east = ground.smooth_at(10.0, 3.0);
   EXPECT_NEAR(west.v_m_s, 4.0, 0.3);
   EXPECT_NEAR(west.u_m_s, 0.0, 0.3);
   EXPECT_NEAR(middle.v_m_s, 2.0, 0.2);
@@ -190,9 +190,9 @@ TEST(BlendedSources, AlongAWallASensorFailsAndReturnsWithoutAJump) {
     for (int i = 0; i < seconds; ++i) {
       run.read(4.0, 180.0, 0);
       if (second_sends) run.read(8.0, 180.0, 1);
-      WindVector before = run.estimator().ground().smooth_at(10.0, 0.0);
-      run.run_for(1.0, [&](const WindState&) {
-        const WindVector now = run.estimator().ground().smooth_at(10.0, 0.0);
+      Vector before = run.estimator().ground().smooth_at(10.0, 0.0);
+      run.run_for(1.0, [&](const State&) {
+        const Vector now = run.estimator().ground().smooth_at(10.0, 0.0);
         largest_step_m_s = std::max(largest_step_m_s, speed_of(now - before));
         before = now;
       });
@@ -211,7 +211,7 @@ TEST(BlendedSources, AlongAWallASensorFailsAndReturnsWithoutAJump) {
 /// Gusts of two sensors `distance_m` apart that have nothing in common, each told where it stands: the variance over
 /// the true one, in the middle between them and where one stands.
 std::pair<double, double> variances_between(double distance_m, std::uint64_t seed) {
-  BlendSettings settings = BlendRun::usual(seed);
+  Settings settings = BlendRun::usual(seed);
   settings.sources = {{.priority = 1, .has_place = true, .east_m = -0.5 * distance_m},
                       {.priority = 1, .has_place = true, .east_m = 0.5 * distance_m}};
   BlendRun run(2, settings);
@@ -223,8 +223,8 @@ std::pair<double, double> variances_between(double distance_m, std::uint64_t see
   for (int i = 0; i < 1500; ++i) {
     run.read(8.0 + 1.5 * first.next(), 180.0, 0);
     run.read(8.0 + 1.5 * second.next(), 180.0, 1);
-    run.run_for(1.0, [&](const WindState& state) {
-      const ground::GroundWind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
+    run.run_for(1.0, [&](const State& state) {
+      const ground::Wind ground = written_to(tapes, {state, run.estimator().ground(), run.estimator().stroke()});
       if (i < 600) return;
       middle.add({.wind = ground.at(*shared_gust_noise(), 0.0, 0.0)});
       end.add({.wind = ground.at(*shared_gust_noise(), 0.5 * distance_m, 0.0)});
@@ -258,7 +258,7 @@ TEST(BlendedSources, AVaneOfEightPointsMakesNoLeapsAndTheDirectionSwingsAsTheTur
   for (int i = 0; i < 1800; ++i) {
     const double true_deg = 200.0 + 9.0 * swing.next();
     coarse.read(std::max(0.0, 8.0 + 1.6 * speed.next()), std::fmod(45.0 * std::round(true_deg / 45.0), 360.0));
-    coarse.run_for(1.0, [&](const WindState& state) {
+    coarse.run_for(1.0, [&](const State& state) {
       const double deg = direction_from_deg(state.wind);
       if (i > 600) {
         largest_turn_deg = std::max(largest_turn_deg, std::abs(std::remainder(deg - before_deg, 360.0)));
@@ -284,7 +284,7 @@ TEST(BlendedSources, ASensorWithoutAVaneLeavesTheWindItsSwing) {
   BlendMoments moments;
   for (int i = 0; i < 1500; ++i) {
     cup.read(std::max(0.0, 8.0 + 1.6 * speed.next()), std::nullopt);
-    cup.run_for(1.0, [&](const WindState& state) {
+    cup.run_for(1.0, [&](const State& state) {
       if (i > 600) moments.add(state);
     });
   }
@@ -295,7 +295,7 @@ TEST(BlendedSources, ASensorWithoutAVaneLeavesTheWindItsSwing) {
 
 TEST(BlendedSources, ARunningMeanSentOftenIsNotTakenForAQuickSensor) {
   // A mean over 120 s, sent every 3 s: its readings hardly differ, and yet the wind outside is gusty.
-  BlendSettings settings = BlendRun::usual(1, 0.25);
+  Settings settings = BlendRun::usual(1, 0.25);
   settings.sources = {{.averaging_s = 120.0}};
   BlendRun run(1, settings);
   TestGusts gusts(1);
@@ -304,7 +304,7 @@ TEST(BlendedSources, ARunningMeanSentOftenIsNotTakenForAQuickSensor) {
   for (int i = 0; i < 1500; ++i) {
     mean_m_s += (8.0 + 2.0 * gusts.next() - mean_m_s) / 120.0;
     if (i % 3 == 0) run.read(mean_m_s, 180.0);
-    run.run_for(1.0, [&](const WindState& state) {
+    run.run_for(1.0, [&](const State& state) {
       if (i > 300) moments.add(state);
     });
   }
@@ -358,8 +358,8 @@ TEST(BlendedSources, WhatNobodySaysIsAssumedByTheInterval) {
 // One of which nobody says what it is is taken as what is assumed, bit for bit.
 TEST(BlendedSources, WhatIsAssumedIsTakenAsIfItWereStated) {
   for (const auto& [interval_s, value] : {std::pair{14, ReadingValue::kInstant}, {60, ReadingValue::kMean}}) {
-    BlendSettings assumed = BlendRun::usual(3, 0.3);
-    BlendSettings stated = assumed;
+    Settings assumed = BlendRun::usual(3, 0.3);
+    Settings stated = assumed;
     assumed.sources = {{.value = ReadingValue::kUnknown}};
     stated.sources = {{.value = value}};
     BlendRun first(1, assumed);
@@ -387,7 +387,7 @@ TEST(BlendedSources, AWaveIsAsMuchLaterAsStated) {
     const double turn = 2.0 * std::numbers::pi * kWave_hz;
     run.read(8.0 + 0.5 * std::sin(turn * second), 180.0);
     double time_s = second;
-    run.run_for(1.0, [&](const WindState& state) {
+    run.run_for(1.0, [&](const State& state) {
       time_s += kBlendTick_s;
       if (second < 600) return;
       cosine += state.wind.v_m_s * std::cos(turn * time_s);
@@ -402,7 +402,7 @@ TEST(BlendedSources, AWaveIsAsMuchLaterAsStated) {
 TEST(BlendedSources, AreFiniteBoundedAndContinuousUnderRandomFaults) {
   constexpr double kStrongest_m_s = 30.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    BlendSettings settings = BlendRun::usual(seed, 0.3);
+    Settings settings = BlendRun::usual(seed, 0.3);
     const ReadingValue value = seed % 2 == 0 ? ReadingValue::kInstant : ReadingValue::kMean;
     settings.sources = {{.priority = 1, .east_m = -20.0, .value = value},
                         {.priority = 1, .weight = 4.0, .east_m = 20.0, .south_m = 5.0, .averaging_s = 20.0},
@@ -424,11 +424,11 @@ TEST(BlendedSources, AreFiniteBoundedAndContinuousUnderRandomFaults) {
       } else if (kind < 0.7) {
         run.read(kStrongest_m_s * unit(random), direction_deg, source);
       }
-      run.run_for(kind > 0.98 ? 20.0 : 0.3 * unit(random), [&](const WindState& state) {
+      run.run_for(kind > 0.98 ? 20.0 : 0.3 * unit(random), [&](const State& state) {
         ASSERT_TRUE(std::isfinite(state.wind.u_m_s) && std::isfinite(state.wind.v_m_s));
         ASSERT_TRUE(state.live_weight >= 0.0 && state.live_weight <= 1.0);
         for (const double east_m : {-50.0, 50.0}) {
-          const WindVector there = run.estimator().ground().at(*shared_gust_noise(), east_m, 0.0);
+          const Vector there = run.estimator().ground().at(*shared_gust_noise(), east_m, 0.0);
           ASSERT_TRUE(std::isfinite(there.u_m_s) && std::isfinite(there.v_m_s));
           fastest_m_s = std::max(fastest_m_s, speed_of(there));
         }

@@ -11,14 +11,14 @@
 namespace yuragi::wind::blend {
 namespace {
 
-const WindVector kFromWest = wind_from(1.0, 270.0);
+const Vector kFromWest = wind_from(1.0, 270.0);
 
 /// A vane, and what its keeper makes of it: where the wind comes from.
 class Vane {
  public:
   explicit Vane(double step_deg = 0.0) : keeper(step_deg) {}
   double direction_after(std::optional<double> direction_deg, double speed_m_s = 5.0, bool otherwise_is_live = false) {
-    WindReading reading;
+    Reading reading;
     reading.speed_m_s = speed_m_s;
     reading.direction_deg = direction_deg;
     return direction_from_deg(keeper.take(reading, 1.0, kFromWest, otherwise_is_live));
@@ -59,9 +59,9 @@ TEST(DirectionKeeper, InACalmItHoldsTheDirectionTheMoreTheCalmerItIs) {
 }
 
 TEST(DirectionKeeper, TurnsTheShorterWayAndFromTheOppositeToo) {
-  const WindVector north = wind_from(1.0, 350.0);
+  const Vector north = wind_from(1.0, 350.0);
   EXPECT_NEAR(std::remainder(direction_from_deg(turned_toward(north, wind_from(1.0, 10.0), 0.5)), 360.0), 0.0, 1e-9);
-  const WindVector opposite = turned_toward(wind_from(1.0, 0.0), wind_from(1.0, 180.0), 0.25);
+  const Vector opposite = turned_toward(wind_from(1.0, 0.0), wind_from(1.0, 180.0), 0.25);
   EXPECT_NEAR(std::abs(std::remainder(direction_from_deg(opposite), 360.0)), 45.0, 1e-6);
   EXPECT_NEAR(speed_of(opposite), 1.0, 1e-12);
 }

@@ -85,7 +85,7 @@ class Pair {
       stroke_.carried_east_m += way_m;
       for (std::size_t place = 0; place < 2; ++place) {
         for (std::size_t band = 0; band < OctaveFollower::kBands; ++band) {
-          const WindVector gust = followers_[place].band(band);
+          const Vector gust = followers_[place].band(band);
           stroke_.pens[place].now.east_m_s[band] = static_cast<float>(gust.u_m_s);
           stroke_.pens[place].now.north_m_s[band] = static_cast<float>(gust.v_m_s);
         }
@@ -264,7 +264,7 @@ class ThreePlaces {
 
 /// The mean square of what the wind between the sensors lacks of the real one there, in the second half of an hour.
 double error_between(double reach, bool learns) {
-  BlendSettings settings;
+  Settings settings;
   settings.climate.turbulence_intensity = 0.2;
   settings.rate_hz = 1.0 / kTick_s;
   for (const double east_m : {-ThreePlaces::kApart_m, ThreePlaces::kApart_m})
@@ -283,7 +283,7 @@ double error_between(double reach, bool learns) {
     const MonoTime now(from_seconds(tick * kTick_s));
     const std::array<double, 3> gusts = wind.next();
     for (const std::size_t source : {0U, 1U}) {
-      WindReading reading;
+      Reading reading;
       reading.time.mono = now;
       reading.speed_m_s = std::max(ThreePlaces::kMean_m_s + gusts[2 * source], 0.0);
       reading.direction_deg = 180.0;
@@ -293,7 +293,7 @@ double error_between(double reach, bool learns) {
     driving.state = estimator.advance(now);
     driving.ground = estimator.ground();
     driving.stroke = estimator.stroke();
-    const ground::GroundWind ground = written_to(tapes, driving);
+    const ground::Wind ground = written_to(tapes, driving);
     if (tick < kTicks / 2) continue;
     const double lacks_m_s = ground.measured_at(0.0, 0.0).v_m_s - ThreePlaces::kMean_m_s - gusts[1];
     squares += lacks_m_s * lacks_m_s / (0.5 * kTicks);

@@ -25,14 +25,14 @@ double plane_at(const MeanWindPlane& plane, const std::vector<double>& shares, c
 }
 
 TEST(MeanWindPlane, AllAtOnePlaceShareWithoutASlope) {
-  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = 3.0}, {.east_m = 3.0}});
+  const MeanWindPlane plane(std::vector<SourceSettings>{{.east_m = 3.0}, {.east_m = 3.0}});
   EXPECT_TRUE(plane.is_point());
   EXPECT_NEAR(plane_at(plane, {0.25, 0.75}, {4.0, 8.0}, 0.0, 0.0), 7.0, 1e-12);
   EXPECT_NEAR(plane_at(plane, {0.25, 0.75}, {4.0, 8.0}, 50.0, 9.0), 7.0, 1e-12);
 }
 
 TEST(MeanWindPlane, GoesFromOneSensorToTheOtherAndOnLevel) {
-  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
+  const MeanWindPlane plane(std::vector<SourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, -10.0, 0.0), 4.0, 0.05);
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 10.0, 0.0), 8.0, 0.05);
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 0.0, 0.0), 6.0, 1e-9);
@@ -42,13 +42,13 @@ TEST(MeanWindPlane, GoesFromOneSensorToTheOtherAndOnLevel) {
 }
 
 TEST(MeanWindPlane, ASceneBesideTheWallHasWhatTheNearerEndHas) {
-  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = 20.0}, {.east_m = 40.0}});
+  const MeanWindPlane plane(std::vector<SourceSettings>{{.east_m = 20.0}, {.east_m = 40.0}});
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 0.0, 0.0), 4.0, 0.05);
   EXPECT_NEAR(plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 40.0, 0.0), 8.0, 0.05);
 }
 
 TEST(MeanWindPlane, AWallMayRunAnyWay) {
-  const MeanWindPlane plane(std::vector<BlendSourceSettings>{
+  const MeanWindPlane plane(std::vector<SourceSettings>{
       {.east_m = -6.0, .south_m = -8.0}, {.east_m = 0.0, .south_m = 0.0}, {.east_m = 6.0, .south_m = 8.0}});
   const std::vector<double> shares(3, 1.0 / 3.0);
   EXPECT_NEAR(plane_at(plane, shares, {2.0, 5.0, 8.0}, 6.0, 8.0), 8.0, 0.1);
@@ -56,7 +56,7 @@ TEST(MeanWindPlane, AWallMayRunAnyWay) {
 }
 
 TEST(MeanWindPlane, ASensorThatFailsFadesOutOfItSteadily) {
-  const MeanWindPlane plane(std::vector<BlendSourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
+  const MeanWindPlane plane(std::vector<SourceSettings>{{.east_m = -10.0}, {.east_m = 10.0}});
   double before = plane_at(plane, {0.5, 0.5}, {4.0, 8.0}, 10.0, 0.0);
   for (double share = 0.5; share > 1e-12; share *= 0.9) {
     // Normalised, as the blend's are.
@@ -73,10 +73,10 @@ TEST(MeanWindPlane, TheSumOfTheWeightsIsThatOfTheSharesAndAllIsFinite) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int round = 0; round < 200; ++round) {
-    std::vector<BlendSourceSettings> sources(1 + random() % 5);
+    std::vector<SourceSettings> sources(1 + random() % 5);
     std::vector<double> shares;
     double sum = 0.0;
-    for (BlendSourceSettings& source : sources) {
+    for (SourceSettings& source : sources) {
       source.east_m = 40.0 * unit(random) - 20.0;
       source.south_m = random() % 2 == 0 ? 0.0 : 10.0 * unit(random);
       shares.push_back(random() % 4 == 0 ? 0.0 : std::pow(unit(random), 8.0));

@@ -9,11 +9,11 @@
 namespace yuragi::wind::blend {
 namespace {
 
-BlendSourceSettings source_at(double east_m, double south_m = 0.0, double lead_m = 0.0) {
+SourceSettings source_at(double east_m, double south_m = 0.0, double lead_m = 0.0) {
   return {.has_place = true, .east_m = east_m, .south_m = south_m, .lead_m = lead_m};
 }
 
-PenPlaces places_of(const std::vector<BlendSourceSettings>& sources) {
+PenPlaces places_of(const std::vector<SourceSettings>& sources) {
   return PenPlaces(sources);
 }
 
@@ -57,7 +57,7 @@ TEST(PenPlaces, OfMoreThanItHoldsTheLastShareTheNearest) {
 }
 
 TEST(PenPlaces, ARelativeSourceHasNoPlaceOfItsOwnBesideAnAbsoluteOne) {
-  BlendSourceSettings microphone = source_at(50.0);
+  SourceSettings microphone = source_at(50.0);
   microphone.is_relative = true;
   const PenPlaces places = places_of({microphone, source_at(-5.0), source_at(5.0)});
   ASSERT_EQ(places.count(), 2U);
@@ -65,7 +65,7 @@ TEST(PenPlaces, ARelativeSourceHasNoPlaceOfItsOwnBesideAnAbsoluteOne) {
 }
 
 TEST(PenPlaces, ARelativeSourceAloneHasItsOwn) {
-  BlendSourceSettings microphone = source_at(50.0);
+  SourceSettings microphone = source_at(50.0);
   microphone.is_relative = true;
   const PenPlaces places = places_of({microphone});
   ASSERT_EQ(places.count(), 1U);

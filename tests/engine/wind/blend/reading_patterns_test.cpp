@@ -134,7 +134,7 @@ Played play(BlendRun& run, const PatternCase& pattern, Wind wind_m_s) {
   Played played;
   double time_s = 0.0;
   for (const Spoken& each : pattern.speech) {
-    run.run_for(each.time_s - time_s, [&](const WindState& state) {
+    run.run_for(each.time_s - time_s, [&](const State& state) {
       time_s += kBlendTick_s;
       const bool is_known = time_s >= pattern.known_from_s;
       if (run.report().health == SourceHealth::kStale) {
@@ -224,8 +224,8 @@ TEST(ReadingPatterns, OneOutageOrTwoFarApartAreNoPause) {
 }
 
 /// Speaks on change only, every second in a wind; in a calm it is silent.
-BlendSettings on_change(double unchanged_for_s) {
-  BlendSettings settings = BlendRun::usual();
+Settings on_change(double unchanged_for_s) {
+  Settings settings = BlendRun::usual();
   settings.sources.push_back({.unchanged_for_s = unchanged_for_s});
   return settings;
 }
@@ -239,7 +239,7 @@ TEST(ReadingPatterns, OnChangeASilenceIsACalmThatLasts) {
   run.read(0.0, 200.0);
   run.run_for(300.0);
   double highest_m_s = 0.0;
-  run.run_for(3000.0, [&](const WindState& state) { highest_m_s = std::max(highest_m_s, speed_of(state.wind)); });
+  run.run_for(3000.0, [&](const State& state) { highest_m_s = std::max(highest_m_s, speed_of(state.wind)); });
   EXPECT_LT(highest_m_s, 0.1) << "no wind is invented";
   EXPECT_GT(run.state().live_weight, 0.99);
   EXPECT_EQ(run.report().health, SourceHealth::kLive);

@@ -15,7 +15,7 @@ constexpr double kChoiceTick_s = 0.1;
 class Choice {
  public:
   /// What the first step finds is taken at once: here nobody.
-  explicit Choice(std::vector<BlendSourceSettings> sources) : count_(sources.size()), choice_(sources, 3.0, 10.0) {
+  explicit Choice(std::vector<SourceSettings> sources) : count_(sources.size()), choice_(sources, 3.0, 10.0) {
     choice_.step(0.0);
   }
   void run_for(double duration_s, const std::vector<bool>& live) {
@@ -44,7 +44,7 @@ TEST(SourceChoice, GivesTheWeightInTheOrderOfTheSources) {
 }
 
 TEST(SourceChoice, ASourceThatIsLiveBeforeTheFirstStepHasItsWeightAtOnce) {
-  SourceChoice choice(std::vector<BlendSourceSettings>(2), 3.0, 10.0);
+  SourceChoice choice(std::vector<SourceSettings>(2), 3.0, 10.0);
   choice.set_live(1, true);
   choice.step(0.0);
   EXPECT_EQ(choice.weight(0), 0.0);
@@ -98,7 +98,7 @@ TEST(SourceChoice, AFlappingSourceIsLeftAloneForLongerAndLonger) {
 }
 
 TEST(SourceChoice, NobodyElseMeansNoWaiting) {
-  Choice choice(std::vector<BlendSourceSettings>(1));
+  Choice choice(std::vector<SourceSettings>(1));
   choice.run_for(20.0, {true});
   choice.run_for(20.0, {false});
   EXPECT_NEAR(choice.weight(0), 1.0, 1e-3) << "while its trust fades, the word is still its";

@@ -52,15 +52,15 @@ class FaultySensor {
       interval_s_ = std::array{0.1, 1.0, 1.0, 5.0, 14.0}.at(random_() % 5);
     }
     if (fault_ == RandomFault::kSilence) return;
-    const WindReading reading = broken(time_s);
+    const Reading reading = broken(time_s);
     tell(reading);
     if (fault_ == RandomFault::kTwice) tell(reading);
   }
 
  private:
-  WindReading broken(double time_s) {
-    const WindVector wind = wind_.at(time_s);
-    WindReading reading;
+  Reading broken(double time_s) {
+    const Vector wind = wind_.at(time_s);
+    Reading reading;
     reading.time.mono = MonoTime(from_seconds(time_s));
     reading.speed_m_s = speed_of(wind);
     reading.direction_deg = direction_from_deg(wind);
@@ -74,8 +74,7 @@ class FaultySensor {
         if (random_() % 4 == 0) reading.speed_m_s = static_cast<double>(random_() % 120);
         break;
       case RandomFault::kFrozen:
-        return WindReading{
-            .time = reading.time, .speed_m_s = 6.5, .direction_deg = 12.0, .gust_m_s = {}, .quality = {}};
+        return Reading{.time = reading.time, .speed_m_s = 6.5, .direction_deg = 12.0, .gust_m_s = {}, .quality = {}};
       case RandomFault::kZero:
         reading.speed_m_s = 0.0;
         break;
@@ -103,7 +102,7 @@ class FaultySensor {
   double until_s_ = 0.0, next_s_ = 0.0, interval_s_ = 1.0;
 };
 
-bool is_finite(WindVector wind) {
+bool is_finite(Vector wind) {
   return std::isfinite(wind.u_m_s) && std::isfinite(wind.v_m_s);
 }
 
@@ -116,16 +115,16 @@ TEST(WindFaults, RandomSequencesLeaveItFiniteAndBounded) {
     double strongest_m_s = 4.0;  // that was believed, or is the climate's
     for (int tick = 0; tick * kFaultyTick_s < 400.0; ++tick) {
       const double time_s = tick * kFaultyTick_s;
-      sensor.speak(time_s, [&](const WindReading& reading) {
+      sensor.speak(time_s, [&](const Reading& reading) {
         if (!is_plausible(reading) || !judge.judge(reading)) return;
         if (estimator.accept(0, reading)) strongest_m_s = std::max(strongest_m_s, reading.speed_m_s);
       });
-      const WindState state = estimator.advance(MonoTime(from_seconds(time_s)));
+      const State state = estimator.advance(MonoTime(from_seconds(time_s)));
       ASSERT_TRUE(is_finite(state.wind)) << "seed " << seed << " at " << time_s << " s";
       ASSERT_LE(speed_of(state.wind), 3.0 * strongest_m_s) << "seed " << seed << " at " << time_s << " s";
       ASSERT_TRUE(state.live_weight >= 0.0 && state.live_weight <= 1.0);
       for (const double away_m : {-30.0, 30.0}) {
-        const WindVector blade = estimator.ground().at(*noise, away_m, 2.0);
+        const Vector blade = estimator.ground().at(*noise, away_m, 2.0);
         ASSERT_TRUE(is_finite(blade)) << "seed " << seed << " at " << time_s << " s";
         ASSERT_LE(speed_of(blade), 3.0 * strongest_m_s) << "seed " << seed << " at " << time_s << " s";
       }
@@ -144,7 +143,7 @@ TEST(WindFaults, ADirectionPassesThroughNorthAtEveryPlace) {
       const double time_s = tick * kFaultyTick_s;
       const MonoTime now(from_seconds(time_s));
       if (time_s >= next_s) {
-        WindReading reading;
+        Reading reading;
         reading.time.mono = now;
         reading.speed_m_s = 6.0;
         reading.direction_deg = time_s < 200.0 ? 350.0 : 10.0;
@@ -152,10 +151,10 @@ TEST(WindFaults, ADirectionPassesThroughNorthAtEveryPlace) {
         next_s += interval_s;
       }
       estimator.advance(now);
-      const ground::GroundWind& ground = estimator.ground();
+      const ground::Wind& ground = estimator.ground();
       for (const double away_m : {0.0, -30.0, 30.0}) {
-        const WindVector known = ground.at(*noise, away_m, away_m) - noise->local(ground.gusts, away_m, away_m) -
-                                 noise->everywhere(ground.gusts);
+        const Vector known = ground.at(*noise, away_m, away_m) - noise->local(ground.gusts, away_m, away_m) -
+                             noise->everywhere(ground.gusts);
         const double from_deg = direction_from_deg(known);
         const double off_north_deg = std::min(from_deg, 360.0 - from_deg);
         ASSERT_LE(off_north_deg, 10.01) << interval_s << " s, at " << time_s << " s";

@@ -38,7 +38,7 @@ using Lines = std::vector<std::vector<Line>>;
 std::array<Lines, 2> measure_lines() {
   std::array<Lines, 2> all;
   fft::RealFft fft(1, kFine.samples);
-  const FieldGrid grid{.count_x = kFine.samples, .count_y = 1, .count_z = kRows, .spacing_m = kFine.spacing_m};
+  const Grid grid{.count_x = kFine.samples, .count_y = 1, .count_z = kRows, .spacing_m = kFine.spacing_m};
   std::vector<float> values(2 * grid.size());
   for (int seed = 0; seed < kFineSeeds; ++seed) {
     WindFieldSettings settings = kFine;
@@ -147,7 +147,7 @@ LongLines measure_long_lines() {
   settings.samples = 64;
   settings.spacing_m = kLong_m / 64.0;
   constexpr int kSeeds = 120;
-  const FieldGrid grid{.count_x = 64, .count_y = 1, .count_z = 64, .spacing_m = settings.spacing_m};
+  const Grid grid{.count_x = 64, .count_y = 1, .count_z = 64, .spacing_m = settings.spacing_m};
   std::vector<float> values(2 * grid.size());
   LongLines lines;
   for (int seed = 0; seed < kSeeds; ++seed) {
@@ -312,7 +312,7 @@ TEST(SpectralWindField, AFrozenTileComesRoundAndAnEvolvingOneIsAnother) {
   WindFieldSettings settings = kTurned;
   settings.direction_deg = 270.0;
   settings.length_m = 6.0;
-  const FieldGrid grid{.count_x = 128, .count_y = 1, .count_z = 128, .spacing_m = 1.0};
+  const Grid grid{.count_x = 128, .count_y = 1, .count_z = 128, .spacing_m = 1.0};
   for (const bool evolves : {false, true}) {
     settings.evolves = evolves;
     SpectralWindField field(settings);
@@ -340,7 +340,7 @@ TEST(SpectralWindField, InSpaceHasAllThreeComponents) {
   settings.dims = 3;
   settings.direction_deg = 270.0;
   settings.samples = 32;
-  const FieldGrid grid{.count_x = 32, .count_y = 32, .count_z = 32, .spacing_m = 1.0};
+  const Grid grid{.count_x = 32, .count_y = 32, .count_z = 32, .spacing_m = 1.0};
   double u = 0.0;
   double v = 0.0;
   double w = 0.0;
@@ -386,7 +386,7 @@ StressRun measure_stress(double stress, bool evolves) {
   settings.spacing_m = 2.0;  // eight lengths
   settings.stress = stress;
   settings.evolves = evolves;
-  const FieldGrid grid{.count_x = 32, .count_y = 32, .count_z = 32, .spacing_m = settings.spacing_m};
+  const Grid grid{.count_x = 32, .count_y = 32, .count_z = 32, .spacing_m = settings.spacing_m};
   std::vector<float> values(3 * grid.size());
   constexpr int kSeeds = 24;
   StressRun run;
@@ -431,7 +431,7 @@ TEST(SpectralWindField, StressChangesTheWindUpwardAlone) {
   WindFieldSettings settings = kTurned;
   settings.dims = 3;
   settings.samples = 16;
-  const FieldGrid grid{.count_x = 16, .count_y = 16, .count_z = 16, .spacing_m = 1.0};
+  const Grid grid{.count_x = 16, .count_y = 16, .count_z = 16, .spacing_m = 1.0};
   std::vector<float> without(3 * grid.size());
   std::vector<float> with(3 * grid.size());
   sample_field(SpectralWindField(settings), grid, without);

@@ -19,7 +19,7 @@ class PlaceField final : public WindField {
 };
 
 TEST(SampleField, GoesThroughComponentsThenSouthThenUpThenEast) {
-  const FieldGrid grid{.count_x = 4, .count_y = 2, .count_z = 3, .spacing_m = 0.5};
+  const Grid grid{.count_x = 4, .count_y = 2, .count_z = 3, .spacing_m = 0.5};
   std::vector<float> values(3 * grid.size());
   sample_field(PlaceField(3), grid, values);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -35,7 +35,7 @@ TEST(SampleField, GoesThroughComponentsThenSouthThenUpThenEast) {
 }
 
 TEST(SampleField, OfTwoDimensionsHasTwoComponents) {
-  const FieldGrid grid{.count_x = 2, .count_y = 1, .count_z = 2, .spacing_m = 1.0};
+  const Grid grid{.count_x = 2, .count_y = 1, .count_z = 2, .spacing_m = 1.0};
   std::vector<float> values(2 * grid.size() + 1, -1.0F);
   sample_field(PlaceField(2), grid, std::span(values).first(2 * grid.size()));
   EXPECT_EQ(values.back(), -1.0F);
@@ -45,20 +45,20 @@ TEST(SampleField, OfTwoDimensionsHasTwoComponents) {
 
 TEST(GroundWindField, IsTheWindOverTheGroundAtEveryHeight) {
   const turbulence::GustNoise noise({.period_m = 64.0, .samples = 256, .seed = 2});
-  ground::GroundWind ground(WindVector{3.0, -2.0});
+  ground::Wind ground(Vector{3.0, -2.0});
   ground.gusts.along_m_s.fill(0.3F);
   ground.gusts.across_m_s.fill(0.2F);
   const GroundWindField field(ground, noise);
   EXPECT_EQ(field.dims(), 2);
   for (int i = 0; i < 20; ++i) {
-    const WindVector there = ground.at(noise, 1.7 * i, -0.9 * i);
+    const Vector there = ground.at(noise, 1.7 * i, -0.9 * i);
     const WindVector3 low = field.at({1.7 * i, 0.0, -0.9 * i});
     EXPECT_EQ(low.u_m_s, there.u_m_s);
     EXPECT_EQ(low.v_m_s, there.v_m_s);
     EXPECT_EQ(low.w_m_s, 0.0);
     EXPECT_EQ(field.at({1.7 * i, 8.0, -0.9 * i}).u_m_s, there.u_m_s);
   }
-  // The same GroundWind goes on: the field is of its moment.
+  // The same ground::Wind goes on: the field is of its moment.
   ground.everywhere = {5.0, -2.0};
   EXPECT_EQ(field.at({}).u_m_s, ground.at(noise, 0.0, 0.0).u_m_s);
 }

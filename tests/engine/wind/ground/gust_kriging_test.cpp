@@ -76,7 +76,7 @@ struct Layout {
 
   std::vector<WindPen> pens;
   double east_m = 0.0, south_m = 0.0;
-  WindVector ahead;
+  Vector ahead;
   GustCoherence law;
   Waves loss_per_m{};
 };

@@ -89,8 +89,8 @@ TEST(WindTapes, DownwindBesideAndUpwindGustsAreLostAsTheLawSays) {
 
 TEST(WindTapes, TheNoiseGrowsWithTheDistanceInEachOctaveInEveryDirection) {
   OnePen one(1.0, 0.95);
-  for (const WindVector toward : {WindVector{0.0, -1.0}, WindVector{1.0, 0.0}, WindVector{0.0, 1.0},
-                                  WindVector{0.6, -0.8}, WindVector{-0.6, 0.8}}) {
+  for (const Vector toward :
+       {Vector{0.0, -1.0}, Vector{1.0, 0.0}, Vector{0.0, 1.0}, Vector{0.6, -0.8}, Vector{-0.6, 0.8}}) {
     WindTapes::Reading before = one.tapes.at(0.0, 0.0);
     for (int step = 0; step < 157; ++step) {
       const double away_m = 0.01 * std::pow(1.07, step);  // to 400 m
@@ -183,7 +183,7 @@ TEST(WindTapes, TowardTheEndOfTheTapeAllBecomesNoiseWithoutAnEdge) {
 
 TEST(WindTapes, IsContinuousOverTheGround) {
   OnePen one;
-  for (const WindVector toward : {WindVector{0.0, -1.0}, WindVector{1.0, 0.0}, WindVector{-0.6, 0.8}}) {
+  for (const Vector toward : {Vector{0.0, -1.0}, Vector{1.0, 0.0}, Vector{-0.6, 0.8}}) {
     double before = one.tapes.at(-5.0 * toward.u_m_s, -5.0 * toward.v_m_s).gusts.v_m_s;
     for (int step = -5000; step < 5000; ++step) {
       const double away_m = 0.001 * step;
@@ -251,7 +251,7 @@ TEST(WindTapes, TwoThatHearTheSameHaveTheSameBits) {
 }
 
 /// The wind where each of these stands is what it measures, but for what is weather to the law.
-void expect_each_has_its_own(const std::vector<WindVector>& places) {
+void expect_each_has_its_own(const std::vector<Vector>& places) {
   StrokeRun run(places);
   WindTapes tapes;
   for (int tick = 0; tick < 3600; ++tick) {
@@ -336,9 +336,9 @@ TEST(WindTapes, WhateverIsWrittenIsReadAsFiniteNumbers) {
     return from + (to - from) * static_cast<double>(random()) / 4294967296.0;
   };
   for (int trial = 0; trial < 40; ++trial) {
-    std::vector<WindVector> places;
+    std::vector<Vector> places;
     for (int i = 0; i <= trial % 4; ++i) {
-      places.push_back(trial % 3 == 0 ? WindVector{1.0, 2.0} : WindVector{uniform(-50.0, 50.0), uniform(-50.0, 50.0)});
+      places.push_back(trial % 3 == 0 ? Vector{1.0, 2.0} : Vector{uniform(-50.0, 50.0), uniform(-50.0, 50.0)});
     }
     StrokeRun run(places);
     WindTapes tapes;

@@ -181,7 +181,7 @@ TEST(CalibrationFit, BinsFollowASensorThatIsNotStraight) {
   }
   // Beyond the fastest wind that there was (10.45 m/s) it goes on as there, not as the whole or as two bins say.
   const Calibration calibration{.curve = curve->curve};
-  WindReading storm;
+  Reading storm;
   storm.speed_m_s = 18.0;
   const double steepness = 0.8 + 0.08 * 8.0;
   EXPECT_NEAR(calibration.applied_to(storm).speed_m_s, 0.3 + 0.8 * 10.45 + 0.04 * 10.45 * 10.45 + 7.55 * steepness,

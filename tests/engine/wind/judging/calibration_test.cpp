@@ -9,8 +9,8 @@
 namespace yuragi::wind::judging {
 namespace {
 
-WindReading raw_reading(double speed_m_s, std::optional<double> direction_deg = {}) {
-  WindReading reading;
+Reading raw_reading(double speed_m_s, std::optional<double> direction_deg = {}) {
+  Reading reading;
   reading.speed_m_s = speed_m_s;
   reading.direction_deg = direction_deg;
   return reading;
@@ -30,7 +30,7 @@ TEST(Calibration, ScalesAndShiftsButLeavesACalmACalm) {
   EXPECT_NEAR(calibration.applied_to(raw_reading(10.0)).speed_m_s, 11.4, 1e-12);
   EXPECT_EQ(calibration.applied_to(raw_reading(0.0)).speed_m_s, 0.0);
   EXPECT_EQ((Calibration{.offset_m_s = -2.0}.applied_to(raw_reading(1.0)).speed_m_s), 0.0) << "never below 0";
-  WindReading reading = raw_reading(5.0);
+  Reading reading = raw_reading(5.0);
   reading.gust_m_s = 8.0;
   EXPECT_NEAR(calibration.applied_to(reading).gust_m_s.value(), 9.2, 1e-12);
 }
@@ -51,7 +51,7 @@ TEST(Calibration, TurnsTheDirectionThroughNorth) {
 TEST(Calibration, TakesTheSensorsNumbersForWhatTheyReallyAre) {
   const Calibration km_h{.unit_m_s = 1.0 / 3.6, .gain = 1.1, .offset_m_s = 0.4};
   EXPECT_NEAR(km_h.applied_to(raw_reading(36.0)).speed_m_s, 11.4, 1e-12);
-  WindReading reading = raw_reading(36.0);
+  Reading reading = raw_reading(36.0);
   reading.gust_m_s = 72.0;
   EXPECT_NEAR(km_h.applied_to(reading).gust_m_s.value(), 22.4, 1e-12);
 }

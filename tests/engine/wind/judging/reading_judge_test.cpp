@@ -19,7 +19,7 @@ class Court {
   bool judge_next(double speed_m_s, std::optional<double> direction_deg = 270.0,
                   std::optional<double> others_m_s = {}) {
     now_s_ += interval_s_;
-    WindReading reading;
+    Reading reading;
     reading.time.mono = MonoTime(from_seconds(now_s_));
     reading.speed_m_s = speed_m_s;
     reading.direction_deg = direction_deg;
@@ -46,8 +46,8 @@ TEST(ReadingJudge, BelievesEveryReadingOfATurbulentWind) {
     ReadingJudge judge;
     int refused = 0;
     for (int i = 0; i < 4000; ++i) {
-      const WindVector now = wind.at(interval_s * i);
-      WindReading reading;
+      const Vector now = wind.at(interval_s * i);
+      Reading reading;
       reading.time.mono = MonoTime(from_seconds(1.0 + interval_s * i));
       reading.speed_m_s = std::round(10.0 * speed_of(now)) / 10.0;
       reading.direction_deg = direction_from_deg(now);
@@ -135,7 +135,7 @@ TEST(ReadingJudge, TheSameValueBeforeAndAfterALongSilenceIsNoFreeze) {
 TEST(ReadingJudge, AGustThatMovesShowsThatTheSensorLives) {
   ReadingJudge judge;
   for (int i = 0; i < 2000; ++i) {
-    WindReading reading;
+    Reading reading;
     reading.time.mono = MonoTime(from_seconds(1000.0 + i));
     reading.speed_m_s = 5.0;  // a mean of ten minutes, say
     reading.gust_m_s = 6.0 + 0.1 * (i % 9);
@@ -172,7 +172,7 @@ TEST(ReadingJudge, ReadingsThatWereRefusedForWhatTheySaidSpeakAgainstTheSensorTo
 
 TEST(ReadingJudge, WhatIsBeyondTheSensorsRangeIsNotBelieved) {
   ReadingJudge judge({.max_speed_m_s = 30.0});
-  WindReading reading;
+  Reading reading;
   reading.speed_m_s = 31.0;
   EXPECT_FALSE(judge.judge(reading));
   reading.speed_m_s = 29.0;
@@ -231,7 +231,7 @@ TEST(ReadingJudge, IsNotConfusedByTimesAndNumbersOfAnyKind) {
   std::mt19937_64 random(3);
   ReadingJudge judge;
   for (int i = 0; i < 20000; ++i) {
-    WindReading reading;
+    Reading reading;
     reading.time.mono = MonoTime(from_seconds(1e4 + static_cast<double>(random() % 20000)));
     reading.speed_m_s = static_cast<double>(random() % 121);
     if (random() % 2 == 0) reading.direction_deg = static_cast<double>(random() % 360);

@@ -33,15 +33,15 @@ class MeasuredWind {
       now.known_along.fill(0.8F);
       now.known_across.fill(0.6F);
     });
-    const WindVector wind = run_.wind();
+    const Vector wind = run_.wind();
     shared_gusts()->carry(gusts_.carried, wind.u_m_s, -wind.v_m_s, StrokeRun::kTick_s);
     ground::DrivingWind driving{.state = {.time = MonoTime(from_seconds(100.0 + time_s_)),
                                           .wind = {},
-                                          .source = WindSource::kLive,
+                                          .source = Source::kLive,
                                           .live_weight = 1.0},
                                 .stroke = run_.stroke()};
     driving.ground.gusts = gusts_;
-    const WindVector way = shared_gusts()->everywhere(gusts_);
+    const Vector way = shared_gusts()->everywhere(gusts_);
     driving.ground.everywhere = wind + way;
     driving.stroke.pens[0].now.way = driving.stroke.pens[0].written.way = way;
     driving.state.wind = wind_where_measured(driving.ground, driving.stroke, *shared_gusts());
@@ -55,9 +55,9 @@ class MeasuredWind {
   double time_s_ = 0.0;
 };
 
-constexpr std::array<WindVector, 4> kPlaces = {WindVector{0.0, 20.0}, {3.0, 10.0}, {-5.0, -15.0}, {10.0, 25.0}};
+constexpr std::array<Vector, 4> kPlaces = {Vector{0.0, 20.0}, {3.0, 10.0}, {-5.0, -15.0}, {10.0, 25.0}};
 
-WindVector wind_at(const ground::GroundWind& ground, WindVector place) {
+Vector wind_at(const ground::Wind& ground, Vector place) {
   return ground.at(*shared_gusts(), place.u_m_s, place.v_m_s);
 }
 
@@ -76,7 +76,7 @@ struct Both {
   WindShaping shaping;
   ground::WindTapes real_tapes, shaped_tapes;
   ground::DrivingWind real, shaped;
-  ground::GroundWind real_ground, shaped_ground;
+  ground::Wind real_ground, shaped_ground;
 };
 
 TEST(WindShapingOfPlaces, WhatIsOffChangesNoBitAnywhere) {
@@ -90,7 +90,7 @@ TEST(WindShapingOfPlaces, WhatIsOffChangesNoBitAnywhere) {
     ASSERT_EQ(shaped.written.known_along, real.written.known_along);
     ASSERT_EQ(shaped.now.gain, 1.0);
     ASSERT_EQ(both.shaped.stroke.way_m, both.real.stroke.way_m);
-    for (const WindVector place : kPlaces) {
+    for (const Vector place : kPlaces) {
       ASSERT_EQ(wind_at(both.shaped_ground, place).u_m_s, wind_at(both.real_ground, place).u_m_s);
       ASSERT_EQ(wind_at(both.shaped_ground, place).v_m_s, wind_at(both.real_ground, place).v_m_s);
     }
@@ -100,9 +100,9 @@ TEST(WindShapingOfPlaces, WhatIsOffChangesNoBitAnywhere) {
 TEST(WindShapingOfPlaces, TheOpeningIsOnAllPlacesAtOnce) {
   Both both({.closed_level = 0.25, .fade_s = 5.0});
   for (int tick = 0; tick < 1800; ++tick) both.next(1.0, false);
-  for (const WindVector place : kPlaces) {
-    const WindVector real = wind_at(both.real_ground, place);
-    const WindVector shaped = wind_at(both.shaped_ground, place);
+  for (const Vector place : kPlaces) {
+    const Vector real = wind_at(both.real_ground, place);
+    const Vector shaped = wind_at(both.shaped_ground, place);
     EXPECT_NEAR(shaped.u_m_s, 0.25 * real.u_m_s, 1e-5);
     EXPECT_NEAR(shaped.v_m_s, 0.25 * real.v_m_s, 1e-5);
   }
@@ -112,16 +112,16 @@ TEST(WindShapingOfPlaces, GustsAreScaledAboutTheMeanAtAllPlaces) {
   for (const double gusts : {0.0, 0.5, 2.0, 3.0}) {
     Both both({.gusts = gusts});
     for (int tick = 0; tick < 900; ++tick) both.next(1.0);
-    const WindVector mean{0.0, 6.0};
-    for (const WindVector place : kPlaces) {
-      const WindVector real = wind_at(both.real_ground, place) - mean;
-      const WindVector shaped = wind_at(both.shaped_ground, place) - mean;
+    const Vector mean{0.0, 6.0};
+    for (const Vector place : kPlaces) {
+      const Vector real = wind_at(both.real_ground, place) - mean;
+      const Vector shaped = wind_at(both.shaped_ground, place) - mean;
       EXPECT_GT(speed_of(real), 0.01);
       EXPECT_NEAR(shaped.u_m_s, gusts * real.u_m_s, 1e-4) << gusts;
       EXPECT_NEAR(shaped.v_m_s, gusts * real.v_m_s, 1e-4) << gusts;
     }
-    const WindVector shown = both.shaped.state.wind - mean;
-    const WindVector measured = both.real.state.wind - mean;
+    const Vector shown = both.shaped.state.wind - mean;
+    const Vector measured = both.real.state.wind - mean;
     EXPECT_NEAR(shown.v_m_s, gusts * measured.v_m_s, 1e-4) << gusts;
   }
 }
@@ -135,9 +135,9 @@ TEST(WindShapingOfPlaces, WhereNothingIsMeasuredAllGustsAreScaledToo) {
     real.state.wind = wind_where_measured(real.ground, real.stroke, *shared_gusts());
     ground::DrivingWind shaped = real;
     shaping.shape(shaped, true);
-    const WindVector mean{0.0, 6.0};
-    for (const WindVector place : kPlaces) {
-      const WindVector expected = mean + gusts * (wind_at(real.ground, place) - mean);
+    const Vector mean{0.0, 6.0};
+    for (const Vector place : kPlaces) {
+      const Vector expected = mean + gusts * (wind_at(real.ground, place) - mean);
       EXPECT_NEAR(wind_at(shaped.ground, place).u_m_s, expected.u_m_s, 1e-4) << gusts;
       EXPECT_NEAR(wind_at(shaped.ground, place).v_m_s, expected.v_m_s, 1e-4) << gusts;
     }
@@ -155,8 +155,8 @@ TEST(WindShapingOfPlaces, TheCeilingsGainGoesWithTheGustThatItCut) {
     // 12 m at 6 m/s: 120 ticks.
     const ground::WindTapes::Reading reading = both.shaped_tapes.at(0.0, 8.0);
     ASSERT_NEAR(reading.gain, gains[static_cast<std::size_t>(tick - 120)], 0.02) << tick;
-    const WindVector there = wind_at(both.shaped_ground, {0.0, 8.0});
-    const WindVector real = wind_at(both.real_ground, {0.0, 8.0});
+    const Vector there = wind_at(both.shaped_ground, {0.0, 8.0});
+    const Vector real = wind_at(both.real_ground, {0.0, 8.0});
     ASSERT_NEAR(there.v_m_s, reading.gain * real.v_m_s, 1e-4);
   }
 }
@@ -174,7 +174,7 @@ TEST(WindShapingOfPlaces, ABreezeBlowsOverACalmThatIsMeasured) {
     both.shaping.shape(calm, true);
     both.shaped_ground = written_to(both.shaped_tapes, calm);
     if (tick < 1500) continue;
-    const WindVector pen = wind_at(both.shaped_ground, {0.0, 20.0});
+    const Vector pen = wind_at(both.shaped_ground, {0.0, 20.0});
     ASSERT_NEAR(speed_of(pen - calm.state.wind), 0.0, 1e-3);
     ASSERT_LT(speed_of(pen), 6.0);
     largest_difference_m_s = std::max(largest_difference_m_s, speed_of(pen - wind_at(both.shaped_ground, {0.0, 0.0})));

@@ -19,10 +19,10 @@ constexpr double kTick_s = 1.0 / 60.0;
 
 /// A wind without gusts, which blows toward north-east.
 ground::DrivingWind steady_wind(double speed_m_s, double time_s, double live_weight = 1.0) {
-  const WindVector ahead{0.6, 0.8};
+  const Vector ahead{0.6, 0.8};
   ground::DrivingWind wind{.state = {.time = MonoTime(from_seconds(time_s)),
                                      .wind = speed_m_s * ahead,
-                                     .source = WindSource::kLive,
+                                     .source = Source::kLive,
                                      .live_weight = live_weight},
                            .ground = speed_m_s * ahead};
   wind.ground.gusts.ahead = ahead;
@@ -156,7 +156,7 @@ TEST(WindShaping, AStillWindGetsABreezeWithTheClimatesTurbulence) {
   double across_square = 0.0;
   constexpr int kSamples = 40'000;
   for (int i = 0; i < kSamples; ++i) {
-    const WindVector shaped = wind.after(0.0, 0.5).state.wind;
+    const Vector shaped = wind.after(0.0, 0.5).state.wind;
     const double along_m_s = 0.6 * shaped.u_m_s + 0.8 * shaped.v_m_s;
     const double across_m_s = 0.6 * shaped.v_m_s - 0.8 * shaped.u_m_s;
     sum += along_m_s;
@@ -176,7 +176,7 @@ TEST(WindShaping, AStillWindGetsABreezeWithTheClimatesTurbulence) {
 TEST(WindShaping, TheBreezeDiffersFromPlaceToPlaceAndTheMiddleIsItsMiddle) {
   ShapedWind wind({.floor_m_s = 2.0});
   const ground::DrivingWind shaped = wind.after_long(0.0, 30.0);
-  const WindVector middle = shaped.ground.at(*shared_gusts(), 0.0, 0.0);
+  const Vector middle = shaped.ground.at(*shared_gusts(), 0.0, 0.0);
   EXPECT_EQ(middle.u_m_s, shaped.state.wind.u_m_s);
   EXPECT_EQ(middle.v_m_s, shaped.state.wind.v_m_s);
   EXPECT_GT(speed_of(shaped.ground.at(*shared_gusts(), 40.0, 25.0) - middle), 0.02);
@@ -338,11 +338,11 @@ TEST(WindShaping, WhateverComesTheWindIsFiniteBoundedAndItsGainsNeverJump) {
 }
 
 /// What an anemometer with a reading a second says in half an hour of calm, breeze, front, storm, silence and calm.
-std::optional<WindReading> reading_of_a_day(int second, std::mt19937& random) {
+std::optional<Reading> reading_of_a_day(int second, std::mt19937& random) {
   const auto uniform = [&](double from, double to) {
     return from + (to - from) * static_cast<double>(random()) / 4294967296.0;
   };
-  WindReading reading;
+  Reading reading;
   reading.time.mono = MonoTime(std::chrono::seconds(second));
   reading.direction_deg = std::fmod(350.0 + 40.0 * std::sin(0.01 * second) + uniform(-10.0, 10.0) + 360.0, 360.0);
   if (second < 400) return reading;
@@ -375,7 +375,7 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
     if (tick % kRate_hz == 0) {
       if (const auto reading = reading_of_a_day(second, random)) estimator.accept(0, *reading);
     }
-    const WindState state = estimator.advance(MonoTime(from_seconds(static_cast<double>(tick) / kRate_hz)));
+    const State state = estimator.advance(MonoTime(from_seconds(static_cast<double>(tick) / kRate_hz)));
     const ground::DrivingWind real{state, estimator.ground()};
     ground::DrivingWind shaped = real;
     shaping.shape(shaped, second / 250 % 2 == 0);

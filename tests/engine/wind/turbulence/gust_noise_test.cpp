@@ -140,11 +140,11 @@ class GustLines {
   Modes modes_of(const GustNoise& noise, const GustNoise::Moment& gusts, double beside_m) {
     std::array<std::vector<double>, 2> line_m_s;
     for (auto& component : line_m_s) component.resize(kSamples);
-    const WindVector ahead = gusts.ahead;
+    const Vector ahead = gusts.ahead;
     for (std::size_t i = 0; i < kSamples; ++i) {
       const double way_m = kStep_m * static_cast<double>(i);
-      const WindVector gust = noise.local(gusts, ahead.u_m_s * way_m - ahead.v_m_s * beside_m,
-                                          -ahead.v_m_s * way_m - ahead.u_m_s * beside_m);
+      const Vector gust = noise.local(gusts, ahead.u_m_s * way_m - ahead.v_m_s * beside_m,
+                                      -ahead.v_m_s * way_m - ahead.u_m_s * beside_m);
       const double hann = 1.0 - std::cos(2.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) / kSamples);
       line_m_s[0][i] = hann * (gust.u_m_s * ahead.u_m_s + gust.v_m_s * ahead.v_m_s);
       line_m_s[1][i] = hann * (gust.v_m_s * ahead.u_m_s - gust.u_m_s * ahead.v_m_s);
@@ -428,13 +428,13 @@ struct Change {
 };
 Change change_over(const GustNoise& noise, const GustNoise::Moment& gusts, double distance_m) {
   constexpr int kPlaces = 200000;
-  const WindVector ahead = gusts.ahead;
+  const Vector ahead = gusts.ahead;
   double squares = 0.0;
   double cubes = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
     const auto [east_m, south_m] = Spot(i);
-    const WindVector here = noise.local(gusts, east_m, south_m);
-    const WindVector later = noise.local(gusts, east_m - distance_m * ahead.u_m_s, south_m + distance_m * ahead.v_m_s);
+    const Vector here = noise.local(gusts, east_m, south_m);
+    const Vector later = noise.local(gusts, east_m - distance_m * ahead.u_m_s, south_m + distance_m * ahead.v_m_s);
     const double change = (later.u_m_s - here.u_m_s) * ahead.u_m_s + (later.v_m_s - here.v_m_s) * ahead.v_m_s;
     squares += change * change / kPlaces;
     cubes += std::pow(change, 3.0) / kPlaces;

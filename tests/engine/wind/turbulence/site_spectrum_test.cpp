@@ -91,7 +91,7 @@ TEST(SiteSpectrum, IsTheSameFromAFile) {
 /// An hour of gusts from a quick source beside a slow one, each as it may.
 std::shared_ptr<SiteSpectrum> fitted(bool may_fit, double interval_s) {
   auto site = std::make_shared<SiteSpectrum>();
-  blend::BlendSettings settings = blend::BlendRun::usual();
+  blend::Settings settings = blend::BlendRun::usual();
   settings.site = site;
   settings.sources = {{.fits_site = may_fit}};
   blend::BlendRun blend(1, settings);
@@ -115,7 +115,7 @@ TEST(SiteSpectrum, IsFittedFromFastSourcesThatMay) {
 TEST(SiteSpectrum, WhatItLearnsMovesTheWindNoMoreThanItMovesAnyway) {
   const auto largest_step = [](bool learns) {
     auto site = std::make_shared<SiteSpectrum>();
-    blend::BlendSettings settings = blend::BlendRun::usual();
+    blend::Settings settings = blend::BlendRun::usual();
     settings.site = site;
     blend::BlendRun blend(1, settings);
     blend::TestGusts gusts(5);

@@ -13,13 +13,13 @@ constexpr SyntheticWindSettings kSettings{
 
 TEST(SyntheticWind, HasTheMeanAndTheTurbulenceThatWereAskedFor) {
   const SyntheticWind wind(kSettings);
-  const WindVector downwind = wind_from(1.0, kSettings.mean_direction_deg);
+  const Vector downwind = wind_from(1.0, kSettings.mean_direction_deg);
   constexpr int kSeconds = 40'000;
   double sum = 0.0;
   double sum_along_squares = 0.0;
   double sum_across_squares = 0.0;
   for (int second = 0; second < kSeconds; ++second) {
-    const WindVector now = wind.at(second);
+    const Vector now = wind.at(second);
     const double along = now.u_m_s * downwind.u_m_s + now.v_m_s * downwind.v_m_s;
     const double across = now.u_m_s * downwind.v_m_s - now.v_m_s * downwind.u_m_s;
     sum += along;
@@ -46,8 +46,8 @@ TEST(SyntheticWind, IsTheSameForTheSameSeedAndAnotherForAnother) {
 TEST(SyntheticWind, MovesWithoutJumpsAlsoWhereItsTilesWrap) {
   const SyntheticWind wind(kSettings);
   for (const double wrap_s : {1024.0, 1024.0 * 1.6180339887498949, 0.25, 500.0}) {
-    const WindVector before = wind.at(wrap_s - 1e-6);
-    const WindVector after = wind.at(wrap_s + 1e-6);
+    const Vector before = wind.at(wrap_s - 1e-6);
+    const Vector after = wind.at(wrap_s + 1e-6);
     EXPECT_LT(speed_of(after - before), 1e-4) << "at " << wrap_s;
   }
 }

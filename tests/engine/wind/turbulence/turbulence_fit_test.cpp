@@ -60,9 +60,9 @@ TEST(VonKarmanMeanVariance, IsTheSpectrumBehindAMovingMean) {
 }
 
 /// Feeds a line of readings, each scale's differences as an estimator makes them.
-void feed(TurbulenceFit& fit, const std::vector<double>& values, double speed_m_s) {
+void feed(Fit& fit, const std::vector<double>& values, double speed_m_s) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::size_t scale = 0; scale < TurbulenceFit::kScales; ++scale) {
+    for (std::size_t scale = 0; scale < Fit::kScales; ++scale) {
       const std::size_t count = std::size_t{1} << scale;
       if (i + 1 < 2 * count) break;
       double difference = 0.0;
@@ -73,7 +73,7 @@ void feed(TurbulenceFit& fit, const std::vector<double>& values, double speed_m_
 }
 
 TEST(TurbulenceFit, APriorWithoutTurbulenceIsFinite) {
-  TurbulenceFit fit({.intensity = 0.0}, 600.0);
+  Fit fit({.intensity = 0.0}, 600.0);
   fit.add(0, 0.0);
   fit.fit(1.0, 5.0);
   EXPECT_TRUE(std::isfinite(fit.turbulence().intensity));
@@ -89,7 +89,7 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
   constexpr std::size_t kReadings = kSamples / kPerReading;
   constexpr auto kDuration_s = static_cast<double>(kReadings);
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const noise::NoiseTile1 noise =
+    const noise::Tile1 noise =
         noise::make_noise_1d({.size = kSamples, .seed = seed, .integral_scale = 12.0 / kDuration_s}).value();
     std::vector<double> readings;
     for (std::size_t i = 0; i + kPerReading <= kSamples; i += kPerReading) {
@@ -97,7 +97,7 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
       for (std::size_t k = 0; k < kPerReading; ++k) sum += static_cast<double>(noise.values[i + k]);
       readings.push_back(7.0 + 0.3 * 7.0 * sum / kPerReading);
     }
-    TurbulenceFit fit({.intensity = 0.1, .length_m = 200.0, .length_weight = 3.0, .intensity_weight = 3.0}, 1e9);
+    Fit fit({.intensity = 0.1, .length_m = 200.0, .length_weight = 3.0, .intensity_weight = 3.0}, 1e9);
     feed(fit, readings, 7.0);
     fit.fit(1.0, 7.0);
     EXPECT_NEAR(fit.turbulence().intensity, 0.3, 0.03) << seed;
@@ -107,8 +107,8 @@ TEST(TurbulenceFit, FindsTheIntensityAndTheLengthThatANoiseWasMadeWith) {
 }
 
 TEST(TurbulenceFit, BelievesItsPriorWhileItHasSeenNothingAndAgainWhenAllIsForgotten) {
-  const TurbulencePrior prior{.intensity = 0.17, .length_m = 57.0, .length_weight = 10.0, .intensity_weight = 10.0};
-  TurbulenceFit fit(prior, 600.0);
+  const Prior prior{.intensity = 0.17, .length_m = 57.0, .length_weight = 10.0, .intensity_weight = 10.0};
+  Fit fit(prior, 600.0);
   fit.fit(1.0, 5.7);
   EXPECT_NEAR(fit.turbulence().intensity, 0.17, 1e-9);
   EXPECT_NEAR(fit.turbulence().time_scale_s, 10.0, 0.8) << "the nearest step";
@@ -123,7 +123,7 @@ TEST(TurbulenceFit, BelievesItsPriorWhileItHasSeenNothingAndAgainWhenAllIsForgot
 }
 
 TEST(TurbulenceFit, StaysFiniteWhateverItIsTold) {
-  TurbulenceFit fit({}, 600.0);
+  Fit fit({}, 600.0);
   fit.add(0, std::numeric_limits<double>::quiet_NaN());
   fit.add(0, kNoEnd);
   fit.add(99, 1.0);

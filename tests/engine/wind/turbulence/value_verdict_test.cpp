@@ -25,10 +25,10 @@ class Station {
     const double interval_s = kStep_s * steps_to_reading;
     const int readings = static_cast<int>(duration_s / interval_s);
     for (int i = 0; i < readings; ++i) {
-      WindVector sum;
+      Vector sum;
       for (int step = 0; step < steps_to_reading; ++step) sum = sum + wind_.at(kStep_s * ++step_);
-      const WindVector instant = wind_.at(kStep_s * step_);
-      const WindVector mean = 1.0 / steps_to_reading * sum;
+      const Vector instant = wind_.at(kStep_s * step_);
+      const Vector mean = 1.0 / steps_to_reading * sum;
       turbulence_.forget(interval_s);
       turbulence_.take(value == ReadingValue::kMean ? mean : instant, {1.0, 0.0}, kMean_m_s, true);
       turbulence_.fit(interval_s, kMean_m_s);

@@ -132,7 +132,7 @@ TEST_F(CrownTest, ShownBareItHasStiffTwigsInThePlaceOfItsLeaves) {
 }
 
 TEST_F(CrownTest, ACopyStandsTurnedAndScaledAtItsPlace) {
-  const TreePlace place{
+  const Place place{
       .from_m = {0.0F, 0.0F, 0.0F}, .to_m = {30.0F, 0.0F, 5.0F}, .cosine = 0.6F, .sine = 0.8F, .scale = 0.5F};
   EXPECT_LT(glm::distance(place.moved({1.0F, 2.0F, 0.0F}), glm::vec3(30.3F, 1.0F, 5.4F)), 1e-5F);
   crown_.choose(view_at({30.0, 1.0, 5.0}, 15.0), {});

@@ -32,7 +32,7 @@ TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
   EXPECT_EQ(first_joint_at(tree_, tree_.levels.size()), all.size());
 
   for (std::size_t level = 0; level < tree_.levels.size(); ++level) {
-    for (const TreePart& part : tree_parts(tree_, level)) {
+    for (const Part& part : tree_parts(tree_, level)) {
       EXPECT_EQ(part.root_at < 0, level == 0);
       for (std::size_t axis = 0; axis < 3 && part.root_at >= 0; ++axis) {
         const auto at = static_cast<std::size_t>(part.root_at) + axis * pose::kStrandsPerBlock;
@@ -62,13 +62,13 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
   const std::size_t links = tree_.levels[kLeafLevel].strands.links_per_strand;
   const auto leaves = tree_parts(tree_, kLeafLevel);
   std::array<float, 3> middle_m{};
-  for (const TreePart& leaf : leaves) {
+  for (const Part& leaf : leaves) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       middle_m[axis] += leaf.root_m[axis] / static_cast<float>(leaves.size());
     }
   }
   float outward = 0.0F;
-  for (const TreePart& leaf : leaves) {
+  for (const Part& leaf : leaves) {
     const pose::JointPosition tip = joints.level(kLeafLevel).joint(leaf.strand, links - 1);
     const std::array<float, 3> way_m = {tip.x_m - leaf.root_m[0], tip.y_m - leaf.root_m[1], tip.z_m - leaf.root_m[2]};
     const float length_m = std::hypot(way_m[0], way_m[1], way_m[2]);
@@ -82,12 +82,12 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
 }
 
 TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {
-  for (const TreePart& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[1], leaf.tint[0]) << "green";
+  for (const Part& leaf : tree_parts(tree_, 3)) EXPECT_GT(leaf.tint[1], leaf.tint[0]) << "green";
   pose::TreeSkeleton tree = tree_;
   tree.foliage = pose::FoliageColor::kAutumn;
-  for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
+  for (const Part& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
   tree.foliage = pose::FoliageColor::kBlossom;
-  for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
+  for (const Part& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace yuragi::drivers::text {
 namespace {
 
 struct KestrelSettings {
-  TextSensorSettings text;
+  SensorSettings text;
   double north_offset_deg = 0.0;  ///< what to add to each direction
 };
 
@@ -30,17 +30,17 @@ KestrelSettings kestrel_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-class KestrelSensor final : public TextSensor {
+class KestrelSensor final : public Sensor {
  public:
   KestrelSensor(const KestrelSettings& settings, std::unique_ptr<bus::BytePort> port)
-      : TextSensor(settings.text, std::move(port)), north_offset_deg_(settings.north_offset_deg) {}
+      : Sensor(settings.text, std::move(port)), north_offset_deg_(settings.north_offset_deg) {}
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override {
     const auto wind = decode::text::decode_kestrel(line);
     if (!wind) return wind.error();
     if (!wind->speed_m_s) return decode::Refusal::kInvalid;
-    wind::WindReading reading{.time = now, .speed_m_s = *wind->speed_m_s};
+    wind::Reading reading{.time = now, .speed_m_s = *wind->speed_m_s};
     if (wind->direction_deg)
       reading.direction_deg =
           decode::wrapped_direction_deg(*wind->direction_deg + std::fmod(north_offset_deg_ + 360.0, 360.0));

@@ -10,7 +10,7 @@
 namespace yuragi::simulators::text {
 namespace {
 
-class Kestrel final : public TextDevice {
+class Kestrel final : public Device {
  public:
   std::span<const core::FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {core::FaultKind::kBadChecksum};
@@ -27,13 +27,13 @@ class Kestrel final : public TextDevice {
 
 }  // namespace
 
-std::unique_ptr<TextDevice> make_kestrel() {
+std::unique_ptr<Device> make_kestrel() {
   return std::make_unique<Kestrel>();
 }
 
 extern const core::Command kKestrelCommand;
 const core::Command kKestrelCommand{[](CLI::App& app) {
-  auto options = std::make_shared<TextOptions>();
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("kestrel", "the Kestrel, of CONTRIBUTING.md");
   options->add_to(*command);
   command->callback([options] { options->run(make_kestrel()); });

@@ -7,7 +7,7 @@
 #include "tests/support/text_fault_bench.hpp"
 
 namespace yuragi::simulators::text {
-std::unique_ptr<TextDevice> make_kestrel();
+std::unique_ptr<Device> make_kestrel();
 }
 
 namespace yuragi::drivers::text {
@@ -46,7 +46,7 @@ class KestrelFault : public TextFaultBench {
     ASSERT_TRUE(is_live());
   }
   void expect_only_the_wind() override {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
+    for (const wind::Reading& reading : bench_.sink.readings) {
       EXPECT_EQ(reading.speed_m_s, 7.0);
       EXPECT_EQ(reading.direction_deg, 123.0);
     }

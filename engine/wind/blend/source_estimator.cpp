@@ -1,4 +1,4 @@
-#include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/source_estimator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -64,8 +64,8 @@ BandWeights full_trust_of(double interval_s, const UnfoldedPart& unfolded = {}) 
 
 }  // namespace
 
-turbulence::TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept {
-  turbulence::TurbulencePrior prior{.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m};
+turbulence::Prior turbulence_prior(const Settings& blend, const SourceSettings& settings) noexcept {
+  turbulence::Prior prior{.intensity = blend.climate.turbulence_intensity, .length_m = blend.length_m};
   if (settings.length_m > 0.0) {
     prior.length_m = settings.length_m;
     prior.length_weight = kOwnLengthWeight;
@@ -74,8 +74,8 @@ turbulence::TurbulencePrior turbulence_prior(const BlendSettings& blend, const B
   return prior;
 }
 
-BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings,
-                         const turbulence::GustNoise& noise)
+SourceEstimator::SourceEstimator(const Settings& blend, const SourceSettings& settings,
+                                 const turbulence::GustNoise& noise)
     : scale(blend.fit_memory_s),
       settings_(settings),
       taken_(settings.value == ReadingValue::kUnknown ? assumed_value(kUnknownInterval_s) : settings.value),
@@ -94,7 +94,7 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
   if (settings.value == ReadingValue::kUnknown) measured_.take_as(taken_);
 }
 
-bool BlendSource::accept(const WindReading& reading, const Around& around) noexcept {
+bool SourceEstimator::accept(const Reading& reading, const Around& around) noexcept {
   if (!makes_wind(settings_.value) || !is_plausible(reading)) return false;
   const bool is_first = !record_.has_reading();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
@@ -132,39 +132,39 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
 
 /// The first reading has its full weight at once: nothing of the source is shown yet, and SourceChoice fades it into
 /// the wind.
-void BlendSource::begin() noexcept {
+void SourceEstimator::begin() noexcept {
   follower_.begin(wind_);
   speed_m_s_ = record_.last()->speed_m_s;
   for (std::size_t i = 0; i < trusts_.size(); ++i) trusts_[i].value = trust_[i] = full_trust_[i];
 }
 
-double BlendSource::expected_interval_s() const noexcept {
+double SourceEstimator::expected_interval_s() const noexcept {
   return record_.interval_s() > 0.0 ? record_.interval_s() : kUnknownInterval_s;
 }
 
-double BlendSource::averaging_s() const noexcept {
+double SourceEstimator::averaging_s() const noexcept {
   if (taken_ == ReadingValue::kInstant) return 0.0;
   return settings_.averaging_s > 0.0 ? settings_.averaging_s : expected_interval_s();
 }
 
-double BlendSource::slowness_s() const noexcept {
+double SourceEstimator::slowness_s() const noexcept {
   return std::max(expected_interval_s(), averaging_s());
 }
 
-double BlendSource::trust_at(double frequency_hz) const noexcept {
+double SourceEstimator::trust_at(double frequency_hz) const noexcept {
   return full_trust_at(frequency_hz, slowness_s()) * unfolded_.at(frequency_hz);
 }
 
 /// What readings of an unknown value are: what is judged from them, or what is assumed by their interval, which
 /// changes only with an interval well beyond the limit.
-ReadingValue BlendSource::likely_value() const noexcept {
+ReadingValue SourceEstimator::likely_value() const noexcept {
   if (const ReadingValue judged = measured_.verdict(); judged != ReadingValue::kUnknown) return judged;
   const double nearer_s = taken_ == ReadingValue::kInstant ? interval_s_ / kBeyondLimit : interval_s_ * kBeyondLimit;
   return assumed_value(nearer_s) == taken_ ? taken_ : assumed_value(interval_s_);
 }
 
 /// False if nothing changes. Weights follow slewed, and the turbulence with its next fit.
-bool BlendSource::set_taken() noexcept {
+bool SourceEstimator::set_taken() noexcept {
   if (settings_.value != ReadingValue::kUnknown) return false;
   const ReadingValue likely = likely_value();
   if (likely == taken_) return false;
@@ -175,7 +175,7 @@ bool BlendSource::set_taken() noexcept {
 }
 
 /// When it has changed.
-void BlendSource::set_interval() noexcept {
+void SourceEstimator::set_interval() noexcept {
   if (expected_interval_s() == interval_s_) return;
   interval_s_ = expected_interval_s();
   set_taken();
@@ -183,7 +183,7 @@ void BlendSource::set_interval() noexcept {
   set_passed();
 }
 
-void BlendSource::set_passed() noexcept {
+void SourceEstimator::set_passed() noexcept {
   passed_[0] = 1.0;
   for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
     passed_[1 + band] = std::sqrt(
@@ -192,14 +192,14 @@ void BlendSource::set_passed() noexcept {
 }
 
 /// Called when the interval has changed, or the fitted turbulence, which sets the trust in instantaneous samples.
-void BlendSource::set_full_trust() noexcept {
+void SourceEstimator::set_full_trust() noexcept {
   if (taken_ == ReadingValue::kInstant) unfolded_.set(interval_s_, turbulence_.time_scale_s);
   full_trust_ = full_trust_of(slowness_s(), unfolded_);
 }
 
 /// Adds a reading, a mean over so long or the wind at its end, to the turbulence, and to the site's spectrum if the
 /// source may update it.
-void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
+void SourceEstimator::measure(Vector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kMinSpeed_m_s);
   const bool has_across = has_vane() && !is_coarse();
   measured_.take(wind_, ahead, speed_m_s, has_across);
@@ -210,7 +210,7 @@ void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
 }
 
 /// Fits the turbulence to the readings, and computes the variance of each octave of the noise from the fit.
-void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
+void SourceEstimator::fit(double interval_s, double advection_m_s) noexcept {
   fitted_s_ = 0.0;
   const double speed_m_s = std::max(speed_m_s_, kMinSpeed_m_s);
   measured_.fit(interval_s, speed_m_s);
@@ -218,7 +218,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   const bool is_other = set_taken();
   if (is_other) set_passed();
   if (is_other || taken_ == ReadingValue::kInstant) set_full_trust();
-  const auto strengths = [&](const turbulence::TurbulenceFit& fit) {
+  const auto strengths = [&](const turbulence::Fit& fit) {
     const turbulence::Turbulence turbulence = fit.turbulence();
     turbulence::GustVariances variances =
         turbulence::gust_variances(*noise_, turbulence.intensity, turbulence.time_scale_s * speed_m_s);
@@ -241,7 +241,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
                     expected_interval_s());
 }
 
-void BlendSource::step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept {
+void SourceEstimator::step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept {
   follower_.step(wind_, parts);
 
   // The weight of a band decays as fast as its waves pass, and as the gusts do (W21).
@@ -266,7 +266,7 @@ void BlendSource::step(MonoTime now, double dt_s, const turbulence::OctaveFollow
   }
 }
 
-SourceResponse BlendSource::passed_of(double frequency_hz) const noexcept {
+SourceResponse SourceEstimator::passed_of(double frequency_hz) const noexcept {
   const std::complex<double> along = averaged_and_held(frequency_hz, averaging_s(), interval_s_);
   if (!has_vane()) return {along, 0.0};
   const std::complex<double> vane(1.0, 2.0 * std::numbers::pi * frequency_hz * direction_.memory_s());

@@ -29,24 +29,24 @@ struct SourceResponse {
 };
 
 /// The prior of a source's turbulence, before it has sent readings. Pure.
-turbulence::TurbulencePrior turbulence_prior(const BlendSettings& blend, const BlendSourceSettings& settings) noexcept;
+turbulence::Prior turbulence_prior(const Settings& blend, const SourceSettings& settings) noexcept;
 
 /// One source of a blend: its readings split into octave bands (engine/wind/README.md W17), the weight of each band
 /// (W18, W21), and the turbulence fitted to its readings (W28, W29). Thread-safe: no. Realtime-safe after construction:
 /// yes.
-class BlendSource {
+class SourceEstimator {
  public:
-  BlendSource(const BlendSettings& blend, const BlendSourceSettings& settings, const turbulence::GustNoise& noise);
+  SourceEstimator(const Settings& blend, const SourceSettings& settings, const turbulence::GustNoise& noise);
 
   /// What a source without a vane needs to know, and the fit.
   struct Around {
-    WindVector ahead{0.0, 1.0};      ///< unit vector downwind
+    Vector ahead{0.0, 1.0};          ///< unit vector downwind
     bool is_direction_live = false;  ///< another source measures it
     double advection_m_s = 1.0;      ///< how fast gusts pass
   };
 
   /// Takes a reading; false for one that is impossible, a maximum, or older than what is known.
-  bool accept(const WindReading& reading, const Around& around) noexcept;
+  bool accept(const Reading& reading, const Around& around) noexcept;
 
   /// Advances to `now`. Precondition: it has sent a reading.
   void step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept;
@@ -60,8 +60,8 @@ class BlendSource {
   bool has_vane() const noexcept { return direction_.has_vane(); }
   bool is_coarse() const noexcept { return direction_.is_coarse(); }
 
-  WindVector mean() const noexcept { return follower_.mean(); }
-  WindVector band(std::size_t band) const noexcept { return follower_.band(band); }
+  Vector mean() const noexcept { return follower_.mean(); }
+  Vector band(std::size_t band) const noexcept { return follower_.band(band); }
   double speed_m_s() const noexcept { return speed_m_s_; }  ///< slow mean of its speeds
 
   /// The weights of the mean and of each band, 0 to 1, slewed; and those that it has while its readings are on time.
@@ -98,17 +98,17 @@ class BlendSource {
   bool set_taken() noexcept;
   void set_passed() noexcept;
   void set_full_trust() noexcept;
-  void measure(WindVector ahead, double mean_of_s) noexcept;
+  void measure(Vector ahead, double mean_of_s) noexcept;
   void fit(double interval_s, double advection_m_s) noexcept;
 
-  BlendSourceSettings settings_;
+  SourceSettings settings_;
   ReadingValue taken_;  ///< not kUnknown
   double mean_memory_s_;
   const turbulence::GustNoise* noise_;
 
   SourceRecord record_;
   DirectionKeeper direction_;
-  WindVector wind_;  ///< that is held
+  Vector wind_;  ///< that is held
   turbulence::OctaveFollower follower_;
   std::array<math::CriticallyDamped, turbulence::OctaveFollower::kBands + 1> trusts_{};
   BandWeights trust_{}, full_trust_{}, passed_{};
