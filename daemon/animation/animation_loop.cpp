@@ -125,6 +125,9 @@ void Loop::tick(const TickSchedule::Tick& tick) {
   animation_.make_room_in(published.bytes);
   published.bytes.assign(frame.begin(), frame.end());
   published.generation = animation_.generation();
+  const std::span<const float> opacities = animation_.opacities();
+  published.scene_count = std::min(opacities.size(), published.opacities.size());
+  std::ranges::copy(opacities.first(published.scene_count), published.opacities.begin());
   frames_.publish();
   wake_io_thread();
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <thread>
@@ -36,10 +38,12 @@ struct LoopCounters {
   }
 };
 
-/// An encoded frame, and the number of the list of scenes that it is of.
+/// An encoded frame, the number of the list of scenes that it is of, and how visible each of them is.
 struct PublishedFrame {
   wire::Bytes bytes;
   std::uint64_t generation = 0;
+  std::array<float, wire::kMaxScenes> opacities{};
+  std::size_t scene_count = 0;
 };
 
 /// The animation's thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and publishes

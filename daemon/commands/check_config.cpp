@@ -48,6 +48,22 @@ std::optional<std::string> from_text(const settings::CameraConfig& camera) {
   return camera.values.text("from");
 }
 
+/// The entries of a list of feeds: their names, and with `full` every value.
+nlohmann::ordered_json list_json(const settings::Config& config, const settings::feeds::ListTable& list, bool full) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  const auto entries = config.lists.find(list.name);
+  if (entries == config.lists.end()) return json;
+  for (const settings::feeds::Entry& entry : entries->second) {
+    json.push_back({{"name", entry.name}});
+    if (!full) continue;
+    json.back()["values"] = json_of(entry.values);
+    for (const auto& [name, below] : entry.below) {
+      for (const ParameterValues& values : below) json.back()[name].push_back(json_of(values));
+    }
+  }
+  return json;
+}
+
 /// What print_summary() shows, and with `full` every value.
 nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
@@ -88,6 +104,8 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   }
   nlohmann::ordered_json json = {
       {"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}, {"alerts", alerts}, {"outputs", outputs}};
+  for (const settings::feeds::ListTable& list : settings::feeds::list_tables())
+    json[list.name] = list_json(config, list, full);
   if (!full) return json;
   for (const settings::ConfigTable& table : settings::config_tables()) {
     const nlohmann::ordered_json values = json_of(config.by_name.at(table.name));
@@ -118,6 +136,10 @@ void print_summary(const settings::Config& config, const std::filesystem::path& 
   }
   for (const settings::AlertConfig& alert : config.alerts)
     fmt::print("  alert {} ({})\n", alert.name, alert.values.text("when"));
+  for (const auto& [list, entries] : config.lists) {
+    for (const settings::feeds::Entry& entry : entries)
+      fmt::print("  {}{}\n", list, entry.name == list ? std::string() : " " + entry.name);
+  }
 }
 
 struct CheckOptions {
@@ -238,6 +260,11 @@ std::vector<DescribedTable> all_tables() {
                  "below an [[output]]: a monitor that it fills, with all of the picture or a part; without any it is "
                  "the primary monitor",
                  output::window_parameters()});
+  for (const settings::feeds::ListTable& list : settings::feeds::list_tables()) {
+    all.push_back({fmt::format("[[{}]]", list.name), std::string(list.summary), list.parameters});
+    for (const settings::feeds::ListTable& below : list.below)
+      all.push_back({fmt::format("[[{}.{}]]", list.name, below.name), std::string(below.summary), below.parameters});
+  }
   return all;
 }
 

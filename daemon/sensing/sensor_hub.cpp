@@ -309,6 +309,22 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
   return all;
 }
 
+std::vector<values::SensorValue> SensorHub::values() const {
+  std::vector<values::SensorValue> all;
+  all.reserve(channels_.size());
+  const MonoTime now = clock_.now().mono;
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    values::SensorValue& value = all.emplace_back();
+    value.state = state_in(channels_[index].state_gate.reported());
+    const wind::SourceReport report = jury_.report(index, now);
+    if (!report.last) continue;
+    value.speed_m_s = report.last->speed_m_s;
+    value.direction_deg = report.last->direction_deg.value_or(values::SensorValue::kNotSent);
+    value.age_s = report.age_s;
+  }
+  return all;
+}
+
 std::vector<wire::QuantityStatus> SensorHub::quantities_of(std::size_t index, MonoTime now) const {
   std::vector<wire::QuantityStatus> all;
   const Channel& channel = channels_[index];

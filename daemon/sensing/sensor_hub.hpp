@@ -16,6 +16,7 @@
 #include "daemon/sensing/sensor_runner.hpp"
 #include "daemon/sensing/sensor_status.hpp"
 #include "daemon/settings/config.hpp"
+#include "daemon/values/moment.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/judging/quantity_watch.hpp"
@@ -84,6 +85,9 @@ class SensorHub {
 
   /// The status of each sensor, and of the fall-back while it plays.
   std::vector<wire::SensorStatus> status() const;
+
+  /// What each sensor sent last, calibrated, in the order of the configuration. Cheaper than status().
+  std::vector<values::SensorValue> values() const;
 
   /// Decides for each sensor, by its name, whether the messages to and from its device are kept for drain_traces().
   void trace(const std::function<bool(std::string_view sensor)>& is_wanted);

@@ -21,6 +21,7 @@
 #include "daemon/animation/recent_lateness.hpp"
 #include "daemon/animation/scene_director.hpp"
 #include "daemon/animation/scene_exchange.hpp"
+#include "daemon/feeds/feeds.hpp"
 #include "daemon/history/history_json.hpp"
 #include "daemon/history/history_reader.hpp"
 #include "daemon/history/wind_history.hpp"
@@ -40,6 +41,7 @@
 #include "daemon/settings/config_file.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/tcp_stream.hpp"
+#include "daemon/values/moment_maker.hpp"
 #include "daemon/web/access.hpp"
 #include "daemon/web/guide.hpp"
 #include "daemon/web/web_server.hpp"
@@ -85,6 +87,23 @@ std::vector<look::Camera> cameras_of(const settings::Config& config) {
   return cameras;
 }
 
+/// Which speeds are 0.5 and 1 of `norm`.
+struct Norms {
+  values::NormScale unknown;                ///< while the site's winds are not known
+  std::optional<values::NormScale> shaped;  ///< of the shaped wind, if the site's winds are scaled to these
+};
+
+Norms norms_of(const settings::ShapingConfig& shaping) {
+  Norms norms{.unknown = {.median_m_s = 0.5 * shaping.norm_speed_m_s, .strong_m_s = shaping.norm_speed_m_s},
+              .shaped = {}};
+  const wind::shaping::SiteRange& site = shaping.settings.site;
+  if (site.median_m_s > 0.0) {
+    norms.shaped = {.median_m_s = site.median_m_s,
+                    .strong_m_s = site.strong_m_s > 0.0 ? site.strong_m_s : 2.0 * site.median_m_s};
+  }
+  return norms;
+}
+
 wire::Lateness lateness_of(const animation::RecentLateness& recent) {
   return {.p50_s = recent.percentile_s(0.5), .p99_s = recent.percentile_s(0.99), .max_s = recent.max_s()};
 }
@@ -104,6 +123,8 @@ class Service::Io {
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0,
              options.lead_s > 0.0 ? sensing::SensorThread::kOfCaller : sensing::SensorThread::kOwn),
         shaper_(config, gusts_),
+        moments_(gusts_),
+        norms_(norms_of(config.shaping)),
         look_(config.look),
         cameras_(cameras_of(config)),
         clock_of_cameras_(config.clock),
@@ -126,6 +147,8 @@ class Service::Io {
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
     if (options.record) history_ = make_history(*options.record);
+    moments_.set_sensors(settings::names_of(config).sensors);
+    moments_.set_places(config.feeds.places, config.feeds.wants_real_places());
     read_token();
     open_page();
     for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
@@ -134,6 +157,7 @@ class Service::Io {
       alerts_.emplace(config.alerts, asio::ip::host_name(), settings::state_file(options.config_file, "alerts.json"),
                       clock_.now());
     }
+    feeds_.emplace(config.feeds);
     if (options.record) {
       recorder_ = make_recorder(config, *options.record);
       hub_.listen_to_quantities([this](std::size_t sensor, const wind::StationQuantities& quantities) {
@@ -399,6 +423,11 @@ class Service::Io {
     parameters_.allow(control_);
     show_look(next.look);
     if (alerts_) alerts_->change(next.alerts);
+    norms_ = norms_of(next.shaping);
+    if (plan.changes_feeds) {
+      moments_.set_places(next.feeds.places, next.feeds.wants_real_places());
+      feeds_->change(next.feeds);
+    }
     stream_.set_admission(admission_of(next.stream));
     if (options_.set_log_level) options_.set_log_level(next.log.level);
     if (recorder_) recorder_->begin_session(recording_info(next, clock_.now()), next.recording);
@@ -437,18 +466,53 @@ class Service::Io {
 
   /// Takes readings and advances the wind.
   wind::ground::DrivingWind next_wind() {
-    wind::ground::DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
+    wind::ground::DrivingWind wind = next_real_wind();
     shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live());
     return wind;
   }
 
-  /// Gives the animation the next wind.
+  wind::ground::DrivingWind next_real_wind() { return {hub_.advance(), hub_.ground(), hub_.stroke()}; }
+
+  /// Gives the animation the next wind, and other programs what they get of it.
   void advance_wind() {
-    wind_.publish(next_wind());
+    const wind::ground::DrivingWind real = next_real_wind();
+    wind::ground::DrivingWind shaped = real;
+    shaper_.shape(shaped, time_for_the_hours(), hub_.is_any_live());
+    wind_.publish(shaped);
+    contain("what other programs get of the wind", [&] { publish_moment(real, shaped); });
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     manager_.went_round(clock_.now().mono, loop_ ? loop_->counters().ticks.load(std::memory_order_relaxed) : 0);
     if (options_.end_with_recordings && hub_.is_finished()) end("the recording has ended");
+  }
+
+  void publish_moment(const wind::ground::DrivingWind& real, const wind::ground::DrivingWind& shaped) {
+    const Instant now = clock_.now();
+    const double dt_s = moment_made_ ? seconds(now.mono - *moment_made_) : 0.0;
+    moment_made_ = now.mono;
+    const wire::Shaping shaping = shaper_.status();
+    const bool is_site_known = shaping.site_median_m_s > 0.0 && shaping.site_strong_m_s > shaping.site_median_m_s;
+    const values::NormScale real_scale =
+        is_site_known ? values::NormScale{.median_m_s = shaping.site_median_m_s, .strong_m_s = shaping.site_strong_m_s}
+                      : norms_.unknown;
+    feeds_->publish(moments_.make({.real = real,
+                                   .shaped = shaped,
+                                   .real_scale = real_scale,
+                                   .shaped_scale = norms_.shaped.value_or(real_scale),
+                                   .time = now,
+                                   .dt_s = dt_s},
+                                  hub_.values(), opacities_));
+  }
+
+  /// Of the scenes in the newest frame; none while scenes are exchanged, when their names are not those of the frame.
+  void note_opacities(const animation::PublishedFrame& frame) {
+    opacities_.clear();
+    if (scenes_->is_changing()) return;
+    std::vector<std::string> names;
+    for (const auto& scene : scenes_->present()->configs) names.push_back(scene.name);
+    if (names != moments_.names().scenes) moments_.set_scenes(std::move(names));
+    opacities_.assign(frame.opacities.begin(),
+                      frame.opacities.begin() + static_cast<std::ptrdiff_t>(frame.scene_count));
   }
 
   /// Advances the wind at the rate of the animation.
@@ -486,6 +550,7 @@ class Service::Io {
     if (frame == nullptr) return;
     if (auto scenes = scenes_->new_scenes(frame->generation)) stream_.publish_scenes(std::move(scenes));
     stream_.publish(std::make_shared<const wire::Bytes>(frame->bytes));
+    note_opacities(*frame);
     exchange_scenes();
     is_up_ = true;
     say_ready();
@@ -588,6 +653,7 @@ class Service::Io {
     if (loop_) loop_->stop();
     stream_.close();
     if (web_) web_->close();
+    feeds_.reset();
     signals_.cancel();
     hangups_.signals.cancel();
     end_timer_.cancel();
@@ -629,6 +695,11 @@ class Service::Io {
   stream::TcpStream stream_;
   sensing::SensorHub hub_;
   shaping::WindShaper shaper_;
+  values::MomentMaker moments_;
+  Norms norms_;
+  std::optional<MonoTime> moment_made_;
+  std::vector<double> opacities_;
+  std::optional<feeds::Feeds> feeds_;
   look::Look look_;                    // for the viewers
   std::vector<look::Camera> cameras_;  // for them, too
   settings::LocalClock clock_of_cameras_;

@@ -25,6 +25,14 @@ Config listening_at(Config config, const std::string& address) {
   return config;
 }
 
+values::Names names_of(const Config& config) {
+  values::Names names;
+  for (const SensorConfig& sensor : config.sensors) names.sensors.push_back(sensor.name);
+  for (const values::Place& place : config.feeds.places) names.places.push_back(place.name);
+  for (const SceneConfig& scene : config.scenes) names.scenes.push_back(scene.name);
+  return names;
+}
+
 std::string read_config_text(const std::filesystem::path& file) {
   auto text = platform::read_whole(file, kMaxConfig_bytes);
   if (!text) throw ConfigError(file.string() + ":1:1: file: " + text.error().message);

@@ -11,6 +11,8 @@
 
 #include "daemon/settings/alert_config.hpp"
 #include "daemon/settings/config_error.hpp"
+#include "daemon/settings/feeds/feeds.hpp"
+#include "daemon/settings/feeds/lists.hpp"
 #include "daemon/settings/http_config.hpp"
 #include "daemon/settings/local_clock.hpp"
 #include "daemon/settings/log_config.hpp"
@@ -21,6 +23,7 @@
 #include "daemon/settings/stream_config.hpp"
 #include "daemon/settings/table_of.hpp"
 #include "daemon/settings/wind_config.hpp"
+#include "daemon/values/moment.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/look/camera.hpp"
@@ -63,6 +66,8 @@ struct Config {
   std::vector<CameraConfig> cameras;
   std::vector<AlertConfig> alerts;
   std::vector<output::Table> outputs;  ///< the viewers', who read the file themselves; here they are checked
+  feeds::Lists lists;                  ///< the entries of feeds::list_tables(), as they are written
+  feeds::Config feeds;                 ///< made of them
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC if no camera has a time
 
   /// The values of config_tables(), from which members above were made. For what writes, compares or changes them only.
@@ -78,8 +83,11 @@ std::span<const ConfigTable> config_tables();
 /// One of them. Throws std::logic_error if there is none.
 const ConfigTable& config_table(std::string_view name);
 
-/// The names of the lists of tables: sensor, scene, camera, alert, output.
+/// The names of the lists of tables: sensor, scene, camera, alert, output, and those of feeds::list_tables().
 std::span<const std::string_view> config_lists();
+
+/// The names that a feed may refer to.
+values::Names names_of(const Config& config);
 
 /// What `yuragi run` does without a file: one synthetic sensor, a grass scene and the ground around it.
 Config default_config();

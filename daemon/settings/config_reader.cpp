@@ -125,6 +125,7 @@ class ConfigReader {
                    [&](std::string name, const toml::table& entry) { read_alert(std::move(name), entry, config); });
     if (const toml::node* node = root.get(output::kOutputList); node != nullptr && is_list(*node))
       config.outputs = output::read_outputs(root, mistakes_);
+    for (const feeds::ListTable& list : feeds::list_tables()) read_list(root, list, config);
     if (!mistakes_.empty()) throw ConfigError(mistakes_.text());
     return config;
   }
@@ -258,6 +259,44 @@ class ConfigReader {
       }
       use(std::move(name), entry);
     });
+  }
+
+  /// A list of feeds::list_tables(), with the lists below each entry.
+  void read_list(const toml::table& root, const feeds::ListTable& list, Config& config) {
+    const auto read_entry = [&](std::string name, const toml::table& entry) {
+      std::set<std::string_view> aside = {kNameKey};
+      for (const feeds::ListTable& below : list.below) aside.insert(below.name);
+      feeds::Entry& read = config.lists[list.name].emplace_back();
+      read.name = std::move(name);
+      read.values = add_entry(list, std::string(list.name), read.name, entry, aside, config);
+      for (const feeds::ListTable& below : list.below) {
+        const std::string path = fmt::format("{}.{}", list.name, below.name);
+        for (const toml::table* table : tables::entries_of(entry, below.name, path, below.max_entries, mistakes_))
+          read.below[below.name].push_back(add_entry(below, path, {}, *table, {}, config));
+      }
+    };
+    if (list.needs_name) return for_each_named(root, list.name, list.max_entries, read_entry);
+    std::set<std::string> names;
+    for_each_table(root, list.name, list.max_entries, [&](const toml::table& entry) {
+      const std::string prefix = std::string(list.name) + ".";
+      const std::string usual =
+          names.empty() ? std::string(list.name) : fmt::format("{} {}", list.name, names.size() + 1);
+      std::string name = tables::read_name(entry, prefix, usual, mistakes_);
+      if (!names.insert(name).second)
+        mistake_in(entry, prefix,
+                   {std::string(kNameKey),
+                    fmt::format("\"{}\" is used twice; give each {} a different name", name, list.name)});
+      read_entry(std::move(name), entry);
+    });
+  }
+
+  /// Reads one entry and adds what it makes to the configuration.
+  ParameterValues add_entry(const feeds::ListTable& list, const std::string& path, const std::string& name,
+                            const toml::table& entry, const std::set<std::string_view>& aside, Config& config) {
+    ParameterValues values = read_values(entry, path + ".", list.parameters, aside);
+    for (const ParameterError& error : list.add(config.feeds, name, values, names_of(config)))
+      mistake_in(entry, path + ".", error);
+    return values;
   }
 
   template <class Description>

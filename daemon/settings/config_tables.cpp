@@ -113,7 +113,11 @@ const ConfigTable& config_table(std::string_view name) {
 }
 
 std::span<const std::string_view> config_lists() {
-  static constexpr std::array<std::string_view, 5> kLists = {"sensor", "scene", "camera", "alert", "output"};
+  static const std::vector<std::string_view> kLists = [] {
+    std::vector<std::string_view> lists = {"sensor", "scene", "camera", "alert", "output"};
+    for (const feeds::ListTable& list : feeds::list_tables()) lists.push_back(list.name);
+    return lists;
+  }();
   return kLists;
 }
 

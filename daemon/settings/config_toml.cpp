@@ -58,6 +58,17 @@ std::string to_toml(const Config& config) {
     if (!windows.empty()) entry.insert(output::kWindowList, std::move(windows));
     append(root, output::kOutputList, std::move(entry), output.output.name);
   }
+  for (const auto& [list, entries] : config.lists) {
+    for (const feeds::Entry& written : entries) {
+      toml::table entry = to_table(written.values);
+      for (const auto& [name, below] : written.below) {
+        toml::array tables;
+        for (const ParameterValues& values : below) tables.push_back(to_table(values));
+        entry.insert(name, std::move(tables));
+      }
+      append(root, list, std::move(entry), written.name);
+    }
+  }
   std::ostringstream out;
   out << root << '\n';
   return out.str();

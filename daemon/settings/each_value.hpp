@@ -38,6 +38,19 @@ void for_each_value(const Config& config, const Visit& visit) {
     visit_table(where, output::output_parameters(), output.values);
     for (const ParameterValues& window : output.windows) visit_table(where, output::window_parameters(), window);
   }
+  for (const feeds::ListTable& list : feeds::list_tables()) {
+    const auto entries = config.lists.find(list.name);
+    if (entries == config.lists.end()) continue;
+    for (const feeds::Entry& entry : entries->second) {
+      const std::string where = std::string(list.name) + " " + entry.name + ": ";
+      visit_table(where, list.parameters, entry.values);
+      for (const feeds::ListTable& below : list.below) {
+        const auto tables = entry.below.find(below.name);
+        if (tables == entry.below.end()) continue;
+        for (const ParameterValues& values : tables->second) visit_table(where, below.parameters, values);
+      }
+    }
+  }
 }
 
 }  // namespace yuragi::daemon::settings

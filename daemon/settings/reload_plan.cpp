@@ -158,6 +158,45 @@ void compare_applied(Comparison& comparison, const char* list, const std::vector
   compare_lists(comparison, list, KeyChange::kAtOnce, running, wanted);
 }
 
+/// The values of a list below each entry.
+using Below = std::vector<ParameterValues>;
+
+void compare_below(Comparison& comparison, const std::string& owner, std::string_view list, const Below& running,
+                   const Below& wanted) {
+  for (std::size_t i = 0; i < std::min(running.size(), wanted.size()); ++i) {
+    comparison.merged(owner + std::string(list) + " " + std::to_string(i + 1) + ": ", {}, KeyChange::kAtOnce,
+                      running[i], wanted[i]);
+  }
+  if (running.size() == wanted.size()) return;
+  comparison.note(KeyChange::kAtOnce, owner + std::string(list) + ": " + std::to_string(running.size()) + " -> " +
+                                          std::to_string(wanted.size()));
+}
+
+/// Of the lists of feeds, all of which is applied.
+void compare_feeds(Comparison& comparison, const Config& running, const Config& wanted) {
+  const auto entries_of = [](const Config& config, std::string_view list) {
+    const auto found = config.lists.find(list);
+    return found != config.lists.end() ? found->second : std::vector<feeds::Entry>();
+  };
+  const auto below_of = [](const feeds::Entry& entry, std::string_view list) {
+    const auto found = entry.below.find(list);
+    return found != entry.below.end() ? found->second : Below();
+  };
+  for (const feeds::ListTable& list : feeds::list_tables()) {
+    const std::vector<feeds::Entry> before = entries_of(running, list.name);
+    const std::vector<feeds::Entry> after = entries_of(wanted, list.name);
+    const std::string name(list.name);
+    compare_applied(comparison, name.c_str(), before, after);
+    for (const feeds::Entry& entry : after) {
+      const auto same = std::ranges::find(before, entry.name, &feeds::Entry::name);
+      if (same == before.end()) continue;
+      for (const feeds::ListTable& below : list.below)
+        compare_below(comparison, name + " " + entry.name + ": ", below.name, below_of(*same, below.name),
+                      below_of(entry, below.name));
+    }
+  }
+}
+
 }  // namespace
 
 ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_change_scenes) {
@@ -189,6 +228,10 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
     comparison.note(KeyChange::kTakesRestart, "[[output]]: has changed; viewers read it when they are started");
   }
   next.outputs = wanted.outputs;
+  compare_feeds(comparison, running, wanted);
+  plan.changes_feeds = next.feeds != wanted.feeds;
+  next.lists = wanted.lists;
+  next.feeds = wanted.feeds;
   next.clock = wanted.clock;
   return plan;
 }

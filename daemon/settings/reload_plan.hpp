@@ -19,6 +19,7 @@ struct ReloadPlan {
 
   bool changes_scenes = false;   ///< next.scenes are not those that run
   bool changes_shaping = false;  ///< something of [shaping]
+  bool changes_feeds = false;    ///< next.feeds is not what runs
   bool is_empty() const noexcept { return applied.empty() && takes_restart.empty(); }
 };
 

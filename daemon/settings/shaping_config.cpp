@@ -132,6 +132,13 @@ const Fields<ShapingTable>& shaping_fields() {
       .max = 7200.0,
       .help = "duration of the fade between open and closed, from the opening or closing time on"},
      of_settings(&WindShapingSettings::fade_s)},
+    {{.name = "norm_speed",
+      .unit = "m/s",
+      .default_value = 12.0,
+      .min = 0.5,
+      .max = 60.0,
+      .help = "speed at which the value `norm` that feeds send is 1, as long as the site's winds are not known"},
+     member_of(&ShapingTable::shaping, &ShapingConfig::norm_speed_m_s)},
 };  // namespace yuragi::daemon::settings
 return kFields;
 }

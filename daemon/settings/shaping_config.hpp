@@ -15,6 +15,7 @@ namespace yuragi::daemon::settings {
 struct ShapingConfig {
   wind::shaping::WindShapingSettings settings;
   OpeningHours hours;
+  double norm_speed_m_s = 12.0;       ///< at which values::Quantity::kNorm is 1 while the site's winds are not known
   std::filesystem::path site_file{};  ///< keeps what was learnt of the site over a restart; empty: not kept
 };
 

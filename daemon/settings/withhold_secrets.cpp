@@ -129,6 +129,9 @@ Result<WithheldText, Failure> withhold_in_configuration(std::string_view toml_te
     });
     for_each_entry("camera", [&](toml::table& camera) { withhold_of_table(camera, "", look::camera_parameters()); });
     for_each_entry("alert", [&](toml::table& alert) { withhold_of_table(alert, "", alert_parameters()); });
+    for (const feeds::ListTable& list : feeds::list_tables()) {
+      for_each_entry(list.name, [&](toml::table& entry) { withhold_of_table(entry, "", list.parameters); });
+    }
     for_each_entry("output", [&](toml::table& output) { withhold_of_table(output, "", output::output_parameters()); });
   });
 }

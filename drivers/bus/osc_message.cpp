@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <type_traits>
 
 #include <lo/lo.h>
@@ -21,6 +22,10 @@ constexpr std::array<std::uint8_t, 8> kBundleMark = {'#', 'b', 'u', 'n', 'd', 'l
 constexpr std::size_t kTimeTag = 8;
 constexpr std::size_t kBundleHead = kBundleMark.size() + kTimeTag;
 constexpr std::size_t kElementHead = 4;
+/// A time tag for "at once".
+constexpr std::uint64_t kAtOnce = 1;
+constexpr std::int64_t kFrom1900To1970_s = 2'208'988'800;
+constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
 /// The deepest nesting of bundles that is accepted.
 constexpr int kDeepestBundle = 8;
 
@@ -60,10 +65,7 @@ std::optional<double> osc_number(char type, const void* argument) {
 
 /// Of 8 bytes: seconds, and a fraction of one, as NTP counts them.
 std::optional<UtcTime> osc_time(OscBytes tag) {
-  constexpr std::uint64_t kAtOnce = 1;
-  constexpr std::int64_t kFrom1900To1970_s = 2'208'988'800;
   constexpr std::int64_t kFrom1900To2036_s = std::int64_t{1} << 32U;
-  constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
   std::uint64_t number = 0;
   for (const std::uint8_t byte : tag) number = number << 8U | byte;
   if (number <= kAtOnce) return std::nullopt;
@@ -72,6 +74,32 @@ std::optional<UtcTime> osc_time(OscBytes tag) {
   const std::int64_t since_1970_s = counted_s - kFrom1900To1970_s + (is_before_2036 ? 0 : kFrom1900To2036_s);
   const std::uint64_t fraction_ns = ((number & 0xffff'ffffU) * kNanosecondsPerSecond) >> 32U;
   return UtcTime(std::chrono::seconds(since_1970_s) + Nanoseconds(static_cast<std::int64_t>(fraction_ns)));
+}
+
+/// The reverse; the seconds wrap in 2036.
+std::uint64_t osc_tag(UtcTime time) {
+  const auto since_1970 = time.time_since_epoch();
+  const auto whole = std::chrono::floor<std::chrono::seconds>(since_1970);
+  const auto fraction_ns = static_cast<std::uint64_t>(Nanoseconds(since_1970 - whole).count());
+  const auto counted_s = static_cast<std::uint64_t>(whole.count() + kFrom1900To1970_s) & 0xffff'ffffU;
+  return counted_s << 32U | (fraction_ns << 32U) / kNanosecondsPerSecond;
+}
+
+void append_big_endian(std::vector<std::uint8_t>& bytes, std::uint64_t number, std::size_t count) {
+  while (count-- > 0) bytes.push_back(static_cast<std::uint8_t>(number >> 8U * count));
+}
+
+std::vector<std::uint8_t> serialised(const LibloMessage& message, const std::string& address) {
+  std::vector<std::uint8_t> bytes(lo_message_length(message.get(), address.c_str()));
+  std::size_t size = bytes.size();
+  lo_message_serialise(message.get(), address.c_str(), bytes.data(), &size);
+  return bytes;
+}
+
+LibloMessage new_message() {
+  LibloMessage message(lo_message_new());
+  if (!message) throw std::bad_alloc();
+  return message;
 }
 
 /// Appends the message. False: it is invalid.
@@ -117,6 +145,29 @@ Result<std::vector<OscMessage>, decode::Refusal> decode_osc(OscBytes datagram) {
   std::vector<OscMessage> messages;
   if (!take_element(datagram, 0, std::nullopt, messages)) return decode::Refusal::kMalformed;
   return messages;
+}
+
+std::vector<std::uint8_t> encode_osc(const std::string& address, std::span<const float> numbers) {
+  const LibloMessage message = new_message();
+  for (const float number : numbers) lo_message_add_float(message.get(), number);
+  return serialised(message, address);
+}
+
+std::vector<std::uint8_t> encode_osc(const std::string& address, const std::string& text) {
+  const LibloMessage message = new_message();
+  lo_message_add_string(message.get(), text.c_str());
+  return serialised(message, address);
+}
+
+std::vector<std::uint8_t> encode_osc_bundle(std::span<const std::vector<std::uint8_t>> messages,
+                                            std::optional<UtcTime> meant_for) {
+  std::vector<std::uint8_t> bundle(kBundleMark.begin(), kBundleMark.end());
+  append_big_endian(bundle, meant_for ? osc_tag(*meant_for) : kAtOnce, kTimeTag);
+  for (const std::vector<std::uint8_t>& message : messages) {
+    append_big_endian(bundle, message.size(), kElementHead);
+    bundle.insert(bundle.end(), message.begin(), message.end());
+  }
+  return bundle;
 }
 
 bool osc_address_matches(const std::string& address, const std::string& pattern) {

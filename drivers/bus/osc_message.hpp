@@ -25,6 +25,14 @@ struct OscMessage {
 /// throws for any bytes. Thread-safe: yes.
 Result<std::vector<OscMessage>, decode::Refusal> decode_osc(std::span<const std::uint8_t> datagram);
 
+/// A message with numbers, or with a text, as bytes; arguments have the types f and s. The numbers are finite.
+std::vector<std::uint8_t> encode_osc(const std::string& address, std::span<const float> numbers);
+std::vector<std::uint8_t> encode_osc(const std::string& address, const std::string& text);
+
+/// A bundle of encoded messages. Without a time tag it is meant for at once.
+std::vector<std::uint8_t> encode_osc_bundle(std::span<const std::vector<std::uint8_t>> messages,
+                                            std::optional<UtcTime> meant_for);
+
 /// Is `address` one of those that `pattern` stands for? OSC's own patterns: ? * [a-z] {this,that}.
 bool osc_address_matches(const std::string& address, const std::string& pattern);
 

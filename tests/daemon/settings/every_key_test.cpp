@@ -77,6 +77,14 @@ std::vector<Written> all_tables() {
   add("output", "[[output]]\nname = \"a\"\n", "", output::output_parameters(), KeyChange::kTakesRestart);
   add("output.window", "[[output]]\nname = \"a\"\n[[output.window]]\n", "", output::window_parameters(),
       KeyChange::kTakesRestart);
+  for (const feeds::ListTable& list : feeds::list_tables()) {
+    const std::string heading = fmt::format("[[sensor]]\ndriver = \"synthetic\"\n[[{}]]\nname = \"a\"\n", list.name);
+    add(std::string(list.name), heading, fmt::format("{} a: ", list.name), list.parameters, KeyChange::kAtOnce);
+    for (const feeds::ListTable& below : list.below) {
+      add(fmt::format("{}.{}", list.name, below.name), fmt::format("{}[[{}.{}]]\n", heading, list.name, below.name),
+          fmt::format("{} a: {} 1: ", list.name, below.name), below.parameters, KeyChange::kAtOnce);
+    }
+  }
   return all;
 }
 
@@ -120,6 +128,15 @@ const std::map<std::string, std::string>& lines_of_choosy_keys() {
       {"camera.from", "from = '06:30'"},
       {"alert.sensor", "sensor = 'synthetic'"},
       {"alert.webhook", "webhook = 'http://nobody reads this'"},
+      {"osc.to", "to = '127.0.0.1:9001'"},
+      {"osc.send", "send = 'wind'"},
+      {"osc.prefix", "prefix = '/a'"},
+      {"osc.map.value", "value = 'norm'"},
+      {"osc.map.address", "address = '/a'"},
+      {"osc.map.from", "from = '0 2'"},
+      {"osc.map.to", "to = '0 2'"},
+      {"osc.cue.sensor", "when = 'sensor_silent'\nsensor = 'synthetic'"},
+      {"osc.cue.address", "address = '/a'"},
       {"output.size", "size = '640x480'"},
       {"output.screen_lower_left", std::string(kScreen)},
       {"output.screen_lower_right", std::string(kScreen)},

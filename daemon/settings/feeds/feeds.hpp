@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/settings/feeds/osc.hpp"
+#include "daemon/values/moment.hpp"
+#include "daemon/values/moment_maker.hpp"
+
+namespace yuragi::daemon::settings::feeds {
+
+/// What is sent to other programs: the typed form of the lists of list_tables().
+struct Config {
+  std::vector<values::Place> places;
+  std::vector<Osc> osc;
+
+  friend bool operator==(const Config&, const Config&) = default;
+
+  /// Is the real wind of the places wanted by any feed?
+  bool wants_real_places() const;
+};
+
+}  // namespace yuragi::daemon::settings::feeds

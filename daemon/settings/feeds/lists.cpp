@@ -1,0 +1,80 @@
+#include "daemon/settings/feeds/lists.hpp"
+
+#include <array>
+#include <utility>
+
+#include "daemon/settings/feeds/place.hpp"
+
+namespace yuragi::daemon::settings::feeds {
+namespace {
+
+constexpr std::size_t kMaxPlaces = 64;
+constexpr std::size_t kMaxFeeds = 16;
+constexpr std::size_t kMaxBelow = 256;
+
+std::vector<ParameterError> add_place(Config& config, const std::string& name, const ParameterValues& values,
+                                      const values::Names&) {
+  config.places.push_back(place_of(name, values));
+  return {};
+}
+
+template <class Made>
+std::vector<ParameterError> add_to(std::vector<Made>& list, Result<Made, ParameterError> made) {
+  if (!made) return {made.error()};
+  list.push_back(std::move(*made));
+  return {};
+}
+
+std::vector<ParameterError> add_osc(Config& config, const std::string& name, const ParameterValues& values,
+                                    const values::Names&) {
+  return add_to(config.osc, osc_of(name, values));
+}
+
+std::vector<ParameterError> add_osc_map(Config& config, const std::string&, const ParameterValues& values,
+                                        const values::Names& names) {
+  if (config.osc.empty()) return {};  // its [[osc]] was refused
+  return add_to(config.osc.back().maps, osc_map_of(values, names));
+}
+
+std::vector<ParameterError> add_osc_cue(Config& config, const std::string&, const ParameterValues& values,
+                                        const values::Names& names) {
+  if (config.osc.empty()) return {};
+  return add_to(config.osc.back().cues, osc_cue_of(values, names));
+}
+
+}  // namespace
+
+std::span<const ListTable> list_tables() {
+  static const std::array kOscLists = {
+      ListTable{.name = "map",
+                .summary = "below an [[osc]]: a value at an address of the receiver's own",
+                .max_entries = kMaxBelow,
+                .needs_name = false,
+                .parameters = osc_map_parameters(),
+                .add = add_osc_map},
+      ListTable{.name = "cue",
+                .summary = "below an [[osc]]: a message that is sent when something happens",
+                .max_entries = kMaxBelow,
+                .needs_name = false,
+                .parameters = osc_cue_parameters(),
+                .add = add_osc_cue},
+  };
+  static const std::array kTables = {
+      ListTable{.name = "place",
+                .summary = "a point on the ground whose wind feeds send; with a name",
+                .max_entries = kMaxPlaces,
+                .needs_name = true,
+                .parameters = place_parameters(),
+                .add = add_place},
+      ListTable{.name = "osc",
+                .summary = "sends the wind as Open Sound Control messages to another program",
+                .max_entries = kMaxFeeds,
+                .needs_name = false,
+                .parameters = osc_parameters(),
+                .add = add_osc,
+                .below = kOscLists},
+  };
+  return kTables;
+}
+
+}  // namespace yuragi::daemon::settings::feeds

@@ -1,0 +1,25 @@
+#include "daemon/values/moment.hpp"
+
+#include <algorithm>
+
+namespace yuragi::daemon::values {
+
+std::optional<std::size_t> index_of(std::span<const std::string> names, std::string_view name) noexcept {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+std::string_view name_of(wind::Source source) noexcept {
+  switch (source) {
+    case wind::Source::kLive:
+      return "live";
+    case wind::Source::kHandover:
+      return "handover";
+    case wind::Source::kDefault:
+      break;
+  }
+  return "default";
+}
+
+}  // namespace yuragi::daemon::values
