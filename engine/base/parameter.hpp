@@ -79,7 +79,7 @@ class ParameterValues {
   std::int64_t integer(std::string_view name) const;
   double number(std::string_view name) const;
   const std::string& text(std::string_view name) const;
-  /// Throws std::runtime_error where it is withheld (Secret::is_withheld): the values are of a recording or of a
+  /// Throws std::runtime_error if it is withheld (Secret::is_withheld): the values are of a recording or of a
   /// configuration that was printed, and the secret has to be given again.
   const Secret& secret(std::string_view name) const;
 

@@ -9,7 +9,7 @@
 namespace yuragi {
 
 /// What a function at a border returns when it can fail as a matter of course: the value, or why there is none.
-/// E is an enum where the caller decides by it, or Failure where a person reads it.
+/// E is an enum if the caller decides by it, or Failure if a person reads it.
 template <class T, class E>
 using Result = boost::system::result<T, E>;
 

@@ -21,7 +21,7 @@ class Secret {
   /// Is it only kWithheld, read back from such a place? Then the secret is not known.
   bool is_withheld() const noexcept { return text_ == kWithheld; }
 
-  /// Nothing where it is empty, else kWithheld.
+  /// Nothing if it is empty, else kWithheld.
   std::string_view printable() const noexcept { return is_empty() ? std::string_view() : kWithheld; }
 
   /// The text itself, for the library that proves with it who we are, and for nothing else.

@@ -52,7 +52,7 @@ Result<Camera, ParameterError> camera_of(std::string name, const ParameterValues
 Camera within_limits(const Camera& camera);
 
 /// Which camera is on at a time of the day, 0 to 24: the one with the latest `from_h` until then; before the first of
-/// the day that is the last one of the day before. Where none has a `from_h`, the first. 0 where there are none.
+/// the day that is the last one of the day before. Where none has a `from_h`, the first. 0 if there are none.
 std::size_t camera_at(std::span<const Camera> cameras, double hour);
 
 }  // namespace yuragi::look

@@ -181,7 +181,7 @@ ClothDynamicsJob::Problem ClothDynamicsJob::run() const noexcept {
     std::fill(cloth->offset_m_.begin(), cloth->offset_m_.end(), 0.0F);
   }
 
-  // A spline through the ghosts is 0 where the column is fixed, and goes on level elsewhere.
+  // A spline through the ghosts is 0 if the column is fixed, and goes on level elsewhere.
   for (std::size_t line = 0; line < 2 * cloth->links(); ++line) {
     float* const lean = cloth->lean_.data() + line * stride;
     lean[0] = cloth->is_first_column_fixed() ? -lean[2] : lean[1];

@@ -38,7 +38,7 @@ struct OscillatorSteps {
   /// Sets the (finite) step of element i. Thread-safe: on different elements, yes. Realtime-safe: yes.
   void set(std::size_t i, const OscillatorStep& step) noexcept;
 
-  /// Sets all steps by OscillatorStep::exact, each at its own rate (an element each), for ticks of dt_s. The rates
+  /// Sets all steps by OscillatorStep::exact, each at its own rate (one element each), for ticks of dt_s. The rates
   /// never change: this recomputes only where dt_s is another than before. Thread-safe: no. Realtime-safe: yes.
   void set_pace(std::span<const float> natural_hz, double damping_ratio, double dt_s) noexcept;
 

@@ -48,7 +48,7 @@ struct SampleJob {
     kNone,
     kLayerCount,       ///< none, or more than kMaxLayers
     kTileNotReadable,  ///< none, or is_readable() is false
-    kSizesDiffer,      ///< place_x, place_z, weights (where there are any) and out
+    kSizesDiffer,      ///< place_x, place_z, weights (if there are any) and out
     kRangeNotNumber,   ///< a weight, scale or bias is not finite, or low and high are not in order
     kRowNotRunnable,
   };
@@ -98,7 +98,7 @@ struct VectorSampleJob {
     kNone,
     kLayerCount,       ///< more than kMaxLayers
     kTileNotReadable,  ///< none, not is_readable(), or the components differ in size
-    kSizesDiffer,      ///< places, weights (where there are any) and outputs
+    kSizesDiffer,      ///< places, weights (if there are any) and outputs
     kWeightNotFinite,
     kRowNotRunnable,
   };

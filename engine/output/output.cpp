@@ -17,7 +17,7 @@ constexpr double kFarthestPlace_m = 1000.0;
 constexpr double kMinSide_m = 0.01;      // of a screen, and the least distance to the eye
 constexpr double kMinSquareness = 0.01;  // the most cosine between a screen's sides
 
-/// Numbers with spaces or commas between them. Nothing where they are not `count` finite ones.
+/// Numbers with spaces or commas between them. Nothing if they are not `count` finite ones.
 std::optional<std::vector<double>> read_numbers(std::string_view text, std::size_t count) {
   constexpr std::string_view kBetween = " ,\t";
   std::vector<double> numbers;

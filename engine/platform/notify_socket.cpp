@@ -15,7 +15,7 @@
 namespace yuragi::platform {
 namespace {
 
-/// Empty where it is not set.
+/// Empty if it is not set.
 std::string_view environment_value(const char* name) {
   const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
   return value == nullptr ? std::string_view() : value;

@@ -23,7 +23,7 @@ class NotifySocket {
   /// Does somebody listen?
   bool is_open() const noexcept { return socket_ >= 0; }
 
-  /// Sends a message, such as "READY=1". False: it is not taken now. Where nobody listens it counts as taken.
+  /// Sends a message, such as "READY=1". False: it is not taken now. If nobody listens it counts as taken.
   bool send(std::string_view message) const;
 
  private:

@@ -17,7 +17,7 @@ class OutputFile {
  public:
   /// A link is followed. `side_suffixes`: suffixes of the files that SQLite keeps beside it while it is open
   /// (windlog::kSideSuffixes); they must outlive this object, and these files are removed with an unfinished file.
-  /// Throws FailureError (kCannotCreate) where the file exists already and `force` is false, where it is not a regular
+  /// Throws FailureError (kCannotCreate) if the file exists already and `force` is false, where it is not a regular
   /// file, where a file with such a suffix exists beside it (it is being recorded, or its recorder was killed), or
   /// where its folder does not exist.
   OutputFile(std::filesystem::path file, bool force, std::span<const std::string_view> side_suffixes = {});

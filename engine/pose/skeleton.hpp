@@ -152,7 +152,7 @@ struct SurfaceSkeleton {
 /// slope by the tangent of half the angle that its axis leans is as thick across the axis as it was.)
 struct SurfacePose {
   std::vector<float> displacement_m;  ///< columns * rows elements
-  std::vector<float> heat;            ///< 0 to 1; as many, or none where there is no ramp
+  std::vector<float> heat;            ///< 0 to 1; as many, or none if there is no ramp
   // rows elements each, or none where rows do not move.
   std::vector<float> row_east_m, row_south_m, row_drop_m;
   std::vector<float> row_slope_east, row_slope_south;

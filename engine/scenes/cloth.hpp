@@ -84,7 +84,7 @@ class Cloth {
   std::span<float> lean() noexcept { return lean_; }
 
   /// The air that the hybrid's cloth is in, m/s: the wind, stronger or weaker and from a little aside where `gusts` are
-  /// (-1 to 1; a value a column of the knots, stride in all). Does nothing where hybrid is 0.
+  /// (-1 to 1; a value a column of the knots, stride in all). Does nothing if hybrid is 0.
   void blow(double wind_east_m_s, double wind_south_m_s, std::span<const float> gusts) noexcept;
 
   /// Advances by dt_s. `rest_kept`: how much of its rest lean the cloth keeps (folds that the wind blows smooth), 0 to

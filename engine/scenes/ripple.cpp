@@ -302,7 +302,7 @@ class Ripple final : public Scene {
   LayeredNoise waves_;                ///< the long field and the short one
   CarriedNoise gusts_;                ///< of its own
   CarriedPlaces gust_places_;
-  std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, where there is one
+  std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, if there is one
   RoughWater rough_;
   std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< a node of rough_ each
   double height_per_slope_m_ = 0.0;

@@ -39,7 +39,7 @@ inline constexpr std::array<StationQuantity, 6> kStationQuantities = {{
     {"rain_rate_mm_h", &StationQuantities::rain_rate_mm_h, 0.0, 3'000.0},
 }};
 
-/// The quantities without those that are not finite or outside their range; nothing where none is left. Thread-safe and
+/// The quantities without those that are not finite or outside their range; nullopt if none is left. Thread-safe and
 /// realtime-safe: yes.
 std::optional<StationQuantities> plausible_part(const StationQuantities& quantities) noexcept;
 

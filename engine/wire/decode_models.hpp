@@ -5,8 +5,8 @@
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
 
-// Internal: between decode.cpp, decode_models.cpp and parameter_tables.cpp. Each returns false where the values
-// contradict each other or are no numbers.
+// Internal: between decode.cpp, decode_models.cpp and parameter_tables.cpp. Each returns false if the values contradict
+// each other or are no numbers.
 
 namespace yuragi::wire {
 

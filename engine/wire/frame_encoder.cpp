@@ -136,7 +136,7 @@ std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info,
 
   const fb::Wind wind = to_schema(info.wind);
   const fb::WindPlace place = place_to_schema(info.wind);
-  // Not a number where there is none: frames of the same scenes have one size, so that none allocates.
+  // Not a number if there is none: frames of the same scenes have one size, so that none allocates.
   const double view_wind_from_deg = info.view_wind_from_deg.value_or(std::numeric_limits<double>::quiet_NaN());
   const auto frame = fb::CreateFrame(buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector,
                                      &place, view_wind_from_deg);

@@ -70,7 +70,7 @@ bool read_list(const flatbuffers::Vector<From>* from, std::size_t most, std::vec
   return true;
 }
 
-/// Nothing where there is none; false where it is no number.
+/// Nullopt if there is none; false if it is no number.
 bool read_limit(const flatbuffers::Optional<double>& from, std::optional<double>& to) {
   if (from.has_value()) to = *from;
   return !to || std::isfinite(*to);

@@ -27,7 +27,7 @@ struct ParameterEdit {
 /// Sets values of [look] or of one scene, until the configuration is read again or the server is started again.
 struct ParameterCommand {
   std::string scene = {};                 ///< its name; empty: [look]
-  std::vector<ParameterEdit> edits = {};  ///< all of them, or none where one has a mistake
+  std::vector<ParameterEdit> edits = {};  ///< all of them, or none if one has a mistake
   bool describe = false;                  ///< the reply lists all parameters, with their values as they are then
   std::uint32_t number = 0;               ///< the client's own, which comes back in the reply
 };

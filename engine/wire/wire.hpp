@@ -225,7 +225,7 @@ struct Sensors {
   std::optional<RecorderStatus> recorder = std::nullopt;  ///< nothing: nothing is recorded, or it is not known
   look::Look look = {};                                   ///< within_limits(), whatever was sent
   std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMaxCameras
-  std::size_t camera = 0;                                 ///< which is on by the time of day; 0 where there are none
+  std::size_t camera = 0;                                 ///< which is on by the time of day; 0 if there are none
   std::uint64_t parameters_revision = 0;                  ///< another number where a ParameterReport would be another
   std::optional<AnimationStatus> animation = std::nullopt;  ///< nothing: not known, or it has no scenes
   std::uint64_t recent_ticks = 0;          ///< of the last 10 minutes, with those that were skipped; 0: not known

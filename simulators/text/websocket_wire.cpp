@@ -1,5 +1,5 @@
-// A WebSocket server (RFC 6455) by Boost.Beast. What is written without a line's end is a frame that the next one
-// continues; a line's end ends the message, and is not sent.
+// A WebSocket server (RFC 6455) by Boost.Beast. Text without a line's end becomes a frame that the next one continues;
+// a line's end ends the message and is not sent.
 #include <algorithm>
 #include <array>
 #include <deque>
@@ -32,10 +32,10 @@ using boost::system::error_code;
 
 /// The longest message that a client may send.
 constexpr std::size_t kMaxSaid = 4096;
-/// More than this waits only for a client that does not read: it is dropped.
+/// Limit for waiting messages. Only a client that does not read reaches it; it is dropped.
 constexpr std::size_t kMaxWaiting = 1000;
 
-/// A client from its request on. Its handlers own it, so that it outlives what is under way.
+/// A client, from its request on. Its handlers own it, so that it outlives its pending operations.
 class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
  public:
   WebSocketPeer(tcp::socket socket, const WebSocketWireOptions& options, bool is_refused, std::string greeting)

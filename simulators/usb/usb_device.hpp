@@ -28,7 +28,7 @@ struct UsbSetup {
 struct UsbDescriptors {
   UsbBytes device;                   ///< 18 bytes
   UsbBytes configuration;            ///< with interfaces, HID descriptors and end points behind it
-  UsbBytes hid_report;               ///< of interface 0; empty: no HID device
+  UsbBytes hid_report;               ///< of interface 0; empty: not an HID device
   std::vector<std::string> strings;  ///< ASCII; number 1 first
 };
 
@@ -44,8 +44,8 @@ class UsbDevice {
   virtual const UsbDescriptors& descriptors() const = 0;
   virtual std::span<const core::FaultKind> known_faults() const = 0;
 
-  /// Advances to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
-  /// kSilence of the whole device are played by UsbPort; wrong content is the device's own.
+  /// Advances to `time_s` after the start, in that wind. Called before all other functions for that moment. UsbPort
+  /// plays kUnplug and kSilence of the whole device; the device itself plays wrong content.
   virtual void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) = 0;
 
   /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host receives, at most
@@ -53,10 +53,10 @@ class UsbDevice {
   virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
 
   /// The data that waits at an IN end point (its number without the direction bit), at most `max_size` bytes: one
-  /// interrupt report, or bulk data. Nullopt: the host has to wait (NAK).
+  /// interrupt report, or bulk data. Returns nullopt if the host has to wait (NAK).
   virtual std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
 
-  /// Takes data that the host sends to an OUT end point. False: refused (a stall).
+  /// Takes data that the host sends to an OUT end point. Returns false if it refuses it (a stall).
   virtual bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;
 };
 

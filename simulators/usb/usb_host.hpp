@@ -20,7 +20,7 @@ class UsbHost {
 
   UsbPort& port() const noexcept { return port_; }
 
-  /// `transfer.id` is chosen here, and returned.
+  /// Sets and returns `transfer.id`.
   std::uint64_t submit(UsbTransfer transfer, Then then) {
     transfer.id = ++last_id_;
     waiting_.emplace(transfer.id, std::move(then));
@@ -51,7 +51,7 @@ class UsbHost {
   }
 
  private:
-  static constexpr int kMaxRounds = 64;  // a device that never stops talking must not keep the others waiting
+  static constexpr int kMaxRounds = 64;  // a device that always has data must not keep the others waiting
 
   UsbPort& port_;
   std::uint64_t last_id_ = 0;

@@ -11,7 +11,7 @@
 
 namespace yuragi::simulators::usb {
 
-/// An interface as the kernel shows it in sysfs, and a USB/IP server in its list.
+/// An interface, as the kernel lists it in sysfs, and a USB/IP server in its device list.
 struct UsbInterface {
   std::uint8_t number = 0;
   std::uint8_t device_class = 0;
@@ -26,7 +26,7 @@ struct UsbEndpoint {
   std::uint16_t max_packet_size = 0;
 };
 
-/// The fields of a device's descriptors. What they lack is zero.
+/// The fields of a device's descriptors. Missing fields are zero.
 struct UsbSummary {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
@@ -40,13 +40,13 @@ struct UsbSummary {
   std::vector<UsbInterface> interfaces;
   std::vector<UsbEndpoint> endpoints;
 
-  /// The end point of that address; nullptr: there is none.
+  /// Returns the end point of that address; nullptr if there is none.
   const UsbEndpoint* endpoint(std::uint8_t address) const;
 };
 
 UsbSummary summary_of(const UsbDescriptors& descriptors);
 
-/// The 8 bytes that begin a control transfer, read.
+/// Decodes the 8 bytes that begin a control transfer.
 UsbSetup usb_setup_of(std::span<const std::uint8_t, 8> bytes);
 
 /// The control pipe of a simulated device: answers the standard requests (USB 2.0 specification, 9.4) from its
@@ -56,10 +56,10 @@ class UsbControlPipe {
   /// `device` must outlive this.
   explicit UsbControlPipe(UsbDevice& device);
 
-  /// True: a request that is answered here and not passed to the device.
+  /// Returns true if a request is answered here and not passed to the device.
   static bool is_standard(const UsbSetup& setup) noexcept { return (setup.request_type & 0x60U) == 0; }
 
-  /// As UsbDevice::control(), and never more than `setup.length` bytes.
+  /// Like UsbDevice::control(), but never more than `setup.length` bytes.
   std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data);
 
   /// The configuration that the host has set; 0: none yet.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxSide_px = 16384;
 
-/// Reads "1280x720"; returns what is wrong with it, or an empty text.
+/// Reads "1280x720". Returns the error, or an empty text.
 std::string read_size(const std::string& text, picture::ViewerOptions& options) {
   const char* const end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, options.width_px);
@@ -30,13 +30,13 @@ std::string read_size(const std::string& text, picture::ViewerOptions& options) 
   return "'" + text + "' is not a size: give WIDTHxHEIGHT in pixels, such as 1920x1080";
 }
 
-/// What is wrong with the name of a picture file, or an empty text.
+/// Returns the error in the name of a picture file, or an empty text.
 std::string check_picture_name(const std::string& name) {
   if (picture::picture_format(name)) return {};
   return "'" + name + "' is not the name of a picture that can be written: it has to end in .png, .jpg or .jpeg";
 }
 
-/// A text of nothing but numbers with commas between that is no view is no camera's name either, but a mistake.
+/// A text of numbers and commas that is not a valid view is rejected, and not taken for a camera's name.
 std::string check_camera(const std::string& text) {
   const bool is_numbers = text.find_first_not_of("0123456789.,+-eE ") == std::string::npos;
   if (!text.empty() && (!is_numbers || text.find(',') == std::string::npos || picture::read_camera_view(text)))
@@ -96,7 +96,7 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
   app.add_option("--samples", options.samples,
                  "Samples per pixel (antialiasing); default 4, or 1 in a window without graphics hardware")
       ->check(CLI::Range(1, 16));
-  // Not add_flag(): CLI11 counts into an optional, and sets it to 0 at once.
+  // Not add_flag(): with an optional, CLI11 sets it to 0 immediately.
   app.add_flag_function(
       "--overlay,!--no-overlay", [&options](std::int64_t count) { options.overlay = count > 0; },
       "Show wind, sensors and stream over the picture (default in windows)");

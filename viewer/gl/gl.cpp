@@ -20,7 +20,7 @@ struct GlShader {
   GLuint name;
 };
 
-/// The file that a text is of; `otherwise` where it is of none.
+/// Returns the file name of a shader text; `otherwise` if it is unknown.
 std::string file_of(std::string_view source, const std::string& otherwise) {
   const auto all = shaders::all();
   const auto found = std::ranges::find(all, source, &shaders::Shader::text);
@@ -146,7 +146,7 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
     const GLuint place = glGetUniformBlockIndex(program.name(), block);
     if (place != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), place, binding);
   }
-  // Also where nothing is looked up: no two kinds of sampler may have one unit.
+  // Also if the sampler is not used: two kinds of sampler must not have one unit.
   set_sampler(program, "shadow_map", kShadowUnit);
   set_sampler(program, "shadow_depth", kShadowDepthUnit);
   set_sampler(program, "cloud_noise", kNoiseUnit);

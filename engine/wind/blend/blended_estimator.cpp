@@ -568,7 +568,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   return state_;
 }
 
-/// Of the readings that take part; 0 where none does.
+/// Of the readings that take part; 0 if none does.
 double BlendedEstimator::newest_age_s() const noexcept {
   std::optional<double> newest_s;
   for (std::size_t i = 0; i < sources_.size(); ++i) {

@@ -27,8 +27,8 @@ namespace yuragi::wind::blend {
 /// interval (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the
 /// rest *in power*, sqrt(1 - |a A|^2), A being what the sensor's own averaging and the holding of its readings leave of
 /// that band, and the strength that von Karman's spectrum has there; its turbulence intensity and length are fitted to
-/// past readings, and return to the climate's where there are none (engine/wind/README.md W17 to W21). The noise is
-/// read from a pattern that the mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and
+/// past readings, and return to the climate's if there are none (engine/wind/README.md W17 to W21). The noise is read
+/// from a pattern that the mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and
 /// across it. A mean that is no longer measured fades into the climate's. All averages are of vectors; weights are
 /// slewed by critically damped filters, so that nothing jumps.
 ///
@@ -40,15 +40,14 @@ namespace yuragi::wind::blend {
 /// Several sources: SourceChoice selects and weights them. Those selected at one place share each band by weight times
 /// trust (W23), so that a slow one dominates the mean and a fast one the gusts; a relative one supplies the gusts that
 /// they do not resolve, scaled to theirs. Sources at several places each have a tape of their own, and their means make
-/// a plane (MeanWindPlane). A source without a vane contributes nothing across the wind, and
-/// one with 8 or 16 points only slow fluctuations.
+/// a plane (MeanWindPlane). A source without a vane contributes nothing across the wind, and one with 8 or 16 points
+/// only slow fluctuations.
 ///
 /// Delay: what comes from a sensor is later than the wind by half of what it averages over, half of the interval that a
 /// reading is held for, and the group delay of the weighted bands, 0.36 to 0.2 of the interval: blend_group_delay_s().
 /// For means over the interval T, one after the other:
 ///
-///     frequency times T   to 0.02   0.05   0.1    0.2    0.25 (the crossover)
-///     delay over T        1.36      1.35   1.31   1.25   1.22
+/// frequency times T to 0.02 0.05 0.1 0.2 0.25 (the crossover) delay over T 1.36 1.35 1.31 1.25 1.22
 ///
 /// The state is finite whatever comes in, and continuous: no reading, loss or return makes it jump. Time is a parameter
 /// and may not go back (a call with an earlier time changes nothing). Thread-safe: no; one thread owns it.

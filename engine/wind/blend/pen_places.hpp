@@ -22,7 +22,7 @@ class PenPlaces {
     double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
     double lead_m = 0.0;                 ///< the pen is so far upwind of there
   };
-  /// 0 where there are no sources.
+  /// 0 if there are no sources.
   std::size_t count() const noexcept { return places_.size(); }
   const Place& place(std::size_t pen) const noexcept { return places_[pen]; }
   std::size_t pen_of(std::size_t source) const noexcept { return pens_[source]; }

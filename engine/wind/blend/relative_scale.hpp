@@ -5,9 +5,8 @@ namespace yuragi::wind::blend {
 /// The gain of a relative source: a slow regression against the absolute sources at the same time.
 ///
 /// The gusts' gain comes from the deviations of both in the bands that both know, the mean's from the mean speeds;
-/// where little is known of the deviations, the gusts have the mean's gain, and where nothing is known both are 1.
-/// Everything fades with `memory_s`; with no absolute source what is known is kept. Thread-safe: no. Realtime-safe:
-/// yes.
+/// if little is known of the deviations, the gusts have the mean's gain, and if nothing is known both are 1. Everything
+/// fades with `memory_s`; with no absolute source what is known is kept. Thread-safe: no. Realtime-safe: yes.
 class RelativeScale {
  public:
   explicit RelativeScale(double memory_s) : memory_s_(memory_s) {}

@@ -57,7 +57,7 @@ class ReadingJudge {
   explicit ReadingJudge(const JudgeSettings& settings = {}) : settings_(settings) {}
 
   /// True: accept the reading. Readings come in the order of their times; one that is late is rejected. `others_m_s`:
-  /// the speed by the other sensors, where there are any.
+  /// the speed by the other sensors, if there are any.
   bool judge(const WindReading& reading, std::optional<double> others_m_s = {}) noexcept;
 
   /// Counts readings that were refused before they came here as impossible.

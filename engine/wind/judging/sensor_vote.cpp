@@ -90,7 +90,7 @@ std::optional<double> SensorVote::majority_m_s() noexcept {
   return middle_m_s;
 }
 
-/// The (lower) median of the means that can be compared; 0 where there is none.
+/// The (lower) median of the means that can be compared; 0 if there is none.
 double SensorVote::median_without(const Voter* left_out) noexcept {
   means_m_s_.clear();
   for (const Voter& voter : voters_) {

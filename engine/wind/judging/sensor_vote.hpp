@@ -57,7 +57,7 @@ class SensorVote {
   /// without patience.
   bool agrees(std::size_t sensor) const noexcept { return voters_[sensor].agrees; }
 
-  /// Its mean speed, and the median of those of the others that can be compared; nothing where there is none.
+  /// Its mean speed, and the median of those of the others that can be compared; nothing if there is none.
   double mean_m_s(std::size_t sensor) const noexcept { return voters_[sensor].mean_m_s; }
   std::optional<double> others_m_s(std::size_t sensor) const noexcept { return voters_[sensor].others_m_s; }
 

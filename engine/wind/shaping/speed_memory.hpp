@@ -23,7 +23,7 @@ class SpeedMemory {
   /// It blew at this speed (finite, at least 0) for dt_s.
   void add(double speed_m_s, double dt_s) noexcept;
 
-  /// The speed below which it blew for this share (0 to 1) of the time. 0 where nothing is known.
+  /// The speed below which it blew for this share (0 to 1) of the time. 0 if nothing is known.
   double percentile(double share) const noexcept;
 
   /// How much is remembered, at most the memory.

@@ -35,7 +35,7 @@ class HaarSquares {
   /// How many differences of a scale (below kScales) are remembered, counted as independent ones: neighbouring
   /// differences overlap, so that 2^scale of them count about as one.
   double observations(std::size_t scale) const noexcept { return std::ldexp(counts_[scale], -static_cast<int>(scale)); }
-  /// Their mean square; 0 where there are none, or all are 0.
+  /// Their mean square; 0 if there are none, or all are 0.
   double mean(std::size_t scale) const noexcept {
     return weights_[scale] > 0.0 ? squares_[scale] / weights_[scale] : 0.0;
   }

@@ -38,7 +38,7 @@ class SiteSpectrum {
   Decibels octaves_db() const noexcept;
   /// How long each has been learnt, at most the memory of three days.
   const Seconds& known_s() const noexcept { return known_s_; }
-  /// The mean of what was learnt, 0 where nothing was.
+  /// The mean of what was learnt, 0 if nothing was.
   const Decibels& learnt_db() const noexcept { return learnt_db_; }
   /// Both, from a file; false, and nothing is changed, where they cannot be that.
   bool restore(std::span<const double> known_s, std::span<const double> learnt_db) noexcept;

@@ -15,7 +15,7 @@ struct Turbulence {
   double time_scale_s = 8.0;  ///< integral length scale of u over the mean speed, L / U, also of a component across
 };
 
-/// The prior of a fit, which it keeps to where there are few readings.
+/// The prior of a fit, which it keeps to if there are few readings.
 struct TurbulencePrior {
   double intensity = 0.2;       ///< standard deviation over the mean speed
   double length_m = 57.0;       ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
@@ -65,7 +65,7 @@ class TurbulenceFit {
   /// The mean square of differences between neighbouring means over tau_s (above 0), by the fit.
   double expected(double tau_s) const noexcept;
 
-  /// By how much the measured power differs from von Karman's at a frequency: 1 where nothing is known.
+  /// By how much the measured power differs from von Karman's at a frequency: 1 if nothing is known.
   double correction(double frequency_hz) const noexcept;
 
  private:
