@@ -65,10 +65,10 @@ void work(const WorkerOptions& options) {
     list_devices(*input, output);
   } else {
     static const sensing::SystemClock clock;  // outlives the sound system's thread
-    const bool was_told =
+    const bool was_stopped =
         drivers::microphone::run_microphone_worker(options.worker, *input, clock, output, is_worker_over);
     // Closing a device that is gone can hang the library: exit without closing it.
-    if (!was_told) _exit(kExitUnavailable);
+    if (!was_stopped) _exit(kExitUnavailable);
   }
 }
 

@@ -210,7 +210,7 @@ RecorderStatus RecorderWorker::locked_status() const {
   status.waiting = std::max(pushed_.load(std::memory_order_relaxed), done) - done;
   if (writing_since_ && std::chrono::steady_clock::now() - *writing_since_ >= limits_.hang_after) {
     status.state = RecorderState::kHanging;
-    status.error = file_.string() + ": the disk does not answer";
+    status.error = file_.string() + ": the disk does not respond";
   }
   return status;
 }

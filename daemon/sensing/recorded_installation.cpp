@@ -26,14 +26,14 @@ constexpr std::size_t kMaxChangesNamed = 5;
 class SilentSensor final : public drivers::sensor::Sensor {
  public:
   MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
-    if (!std::exchange(has_told_, true)) {
+    if (!std::exchange(has_reported_, true)) {
       sink.link(wind::LinkState::kFinished, "the recording has no reading of it");
     }
     return clock.now().mono + std::chrono::hours(1);
   }
 
  private:
-  bool has_told_ = false;
+  bool has_reported_ = false;
 };
 
 /// Returns a failure to read a recording as a failure of its data, with any error code of SQLite.
@@ -87,7 +87,7 @@ void leave_out_what_acts_outside(settings::Config& config, std::vector<std::stri
 }
 
 /// Returns true if this sensor has a reading from a log time on.
-Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
+Result<bool, Failure> has_readings_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
   std::vector<bool> is_it;
   for (const auto& candidate : reader.sensors()) is_it.push_back(candidate.name == sensor);
   if (std::ranges::find(is_it, true) == is_it.end()) return false;
@@ -143,7 +143,7 @@ Result<RecordedInstallation, Failure> recorded_installation(const std::filesyste
 
   bool is_any_played = false;
   for (settings::SensorConfig& sensor : installation.config.sensors) {
-    const auto speaks = speaks_after(*reader, sensor.name, *begin);
+    const auto speaks = has_readings_after(*reader, sensor.name, *begin);
     if (!speaks) return speaks.error();
     is_any_played = is_any_played || *speaks;
     if (!*speaks) installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));

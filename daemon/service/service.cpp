@@ -175,7 +175,7 @@ class Service::Io {
       loop_->start();
     } else {
       is_up_ = true;
-      say_ready();
+      report_ready();
     }
 
     while (!contain("a task of the I/O thread", [this] { io_.run(); })) {
@@ -378,7 +378,7 @@ class Service::Io {
 
   void reload(const std::string& expected_file, Reload::Reply reply) {
     reload_.request(expected_file, std::move(reply));
-    if (reload_.is_under_way()) manager_.say_reloading();
+    if (reload_.is_under_way()) manager_.report_reloading();
   }
 
   /// Hands the scenes that wait to the animation, unless too many cues do; then with the next frame. What they have
@@ -490,20 +490,20 @@ class Service::Io {
     stream_.publish(std::make_shared<const wire::Bytes>(frame->bytes));
     exchange_scenes();
     is_up_ = true;
-    say_ready();
+    report_ready();
   }
 
   /// At first, and again after each reload.
-  void say_ready() {
-    if (is_up_ && !reload_.is_under_way()) manager_.say_ready();
+  void report_ready() {
+    if (is_up_ && !reload_.is_under_way()) manager_.report_ready();
   }
 
   void send_status() {
     contain("giving up a reload", [this] { reload_.give_up_late(clock_.now().mono); });
     contain("the status", [this] {
       const wire::Sensors status = publish_status();
-      manager_.say_status(status);
-      say_ready();
+      manager_.report_status(status);
+      report_ready();
       if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
     });
 
@@ -586,7 +586,7 @@ class Service::Io {
 
   void end(const char* why) {
     spdlog::info("ending: {}", why);
-    manager_.say_stopping(why);
+    manager_.report_stopping(why);
     if (loop_) loop_->stop();
     stream_.close();
     if (web_) web_->close();

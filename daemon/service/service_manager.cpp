@@ -16,22 +16,22 @@ ServiceManager::ServiceManager(platform::ServiceEnvironment service, bool with_a
   if (socket_.is_open() && service.is_ours && service.watchdog) watchdog_.emplace(*service.watchdog, with_animation);
 }
 
-void ServiceManager::say_ready() {
+void ServiceManager::report_ready() {
   is_ready_ = is_ready_ || socket_.send("READY=1");
 }
 
-void ServiceManager::say_reloading() {
+void ServiceManager::report_reloading() {
   if (is_ready_ && socket_.send("RELOADING=1")) is_ready_ = false;
 }
 
-void ServiceManager::say_status(const wire::Sensors& status) {
+void ServiceManager::report_status(const wire::Sensors& status) {
   const auto live = std::ranges::count(status.sensors, wind::SourceHealth::kLive, &wire::SensorStatus::health);
   const std::string line = fmt::format("{} of {} live, {}", live, count_text(status.sensors.size(), "sensor"),
                                        count_text(status.clients, "client"));
   if (line != status_ && socket_.send("STATUS=" + line)) status_ = line;
 }
 
-void ServiceManager::say_stopping(const std::string& why) {
+void ServiceManager::report_stopping(const std::string& why) {
   socket_.send("STOPPING=1\nSTATUS=ending: " + why);
 }
 

@@ -18,16 +18,16 @@ class ServiceManager {
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
   explicit ServiceManager(bool with_animation);
   /// READY=1, until it is taken.
-  void say_ready();
+  void report_ready();
 
   /// RELOADING=1, which the next READY=1 ends.
-  void say_reloading();
+  void report_reloading();
 
   /// STATUS=: one plain line, of the status that clients get. Sent if it differs from the last line.
-  void say_status(const wire::Sensors& status);
+  void report_status(const wire::Sensors& status);
 
   /// STOPPING=1.
-  void say_stopping(const std::string& why);
+  void report_stopping(const std::string& why);
 
   /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog if that is due.
   void went_round(MonoTime now, std::uint64_t animation_ticks);

@@ -71,7 +71,7 @@ struct MqttKeys {
   std::string direction_path;
   std::string gust_path;
   std::string speed_unit;
-  bool speaks_on_change = false;
+  bool reports_on_change = false;
 
   bool has_own_unit() const { return speed_unit != kMqttUnits[0]; }
 };
@@ -158,7 +158,7 @@ const Fields<MqttKeys> kMqttFields = {
       .default_value = false,
       .help = "the publisher sends only changes (Home Assistant's statestream): without messages the wind counts as "
               "unchanged, for as long as `silence`, which must be longer than the longest calm"},
-     &MqttKeys::speaks_on_change},
+     &MqttKeys::reports_on_change},
     {{"keep_alive", "s", std::int64_t{15}, 5, 3600, "a broker that sends nothing for this long is pinged"},
      of(&MqttSettings::subscription, &MqttSubscription::keep_alive),
      [](std::int64_t time_s) { return std::chrono::seconds(time_s); }},
@@ -252,9 +252,9 @@ class MqttSensor final : public sensor::ReopeningSensor {
     const auto unit = unit_of(payload);
     if (!unit) return sink.refused(unit.error());
 
-    const auto direction = said_in(settings_.direction, message.topic, payload, 1.0, now.mono, sink);
+    const auto direction = value_in(settings_.direction, message.topic, payload, 1.0, now.mono, sink);
     if (direction) hold_direction(*direction, sink);
-    const auto gust = said_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
+    const auto gust = value_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
     if (gust && !hold_gust(*gust)) return sink.refused(decode::Refusal::kImplausible);
     if (!bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) return;
     const MqttPlace* const speed = place_in(payload, settings_.speed);
@@ -291,8 +291,8 @@ class MqttSensor final : public sensor::ReopeningSensor {
 
   /// Returns a direction or gust of this message: without a value if that cannot be read, or is sent as unknown;
   /// nullopt if the message has no place for it.
-  std::optional<HeldValue> said_in(const MqttSource& source, const std::string& topic, const Payload& payload,
-                                   double unit, MonoTime now, sensor::SensorSink& sink) const {
+  std::optional<HeldValue> value_in(const MqttSource& source, const std::string& topic, const Payload& payload,
+                                    double unit, MonoTime now, sensor::SensorSink& sink) const {
     if (!bus::mqtt_topic_matches(topic, source.topic)) return std::nullopt;
     const MqttPlace* const place = place_in(payload, source);
     if (place == nullptr) return std::nullopt;
@@ -490,7 +490,7 @@ sensor::ValueSelection mqtt_selection(const ParameterValues& values) {
 
 double mqtt_unchanged_for_s(const ParameterValues& values) {
   const MqttKeys keys = kMqttFields.of(values);
-  return keys.speaks_on_change ? seconds(keys.settings.silence) : 0.0;
+  return keys.reports_on_change ? seconds(keys.settings.silence) : 0.0;
 }
 
 }  // namespace

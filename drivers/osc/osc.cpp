@@ -41,7 +41,7 @@ struct OscSettings {
   std::int64_t gust_argument = -1;
   double metres_per_second = 1.0;
   Nanoseconds silence = std::chrono::seconds(5);
-  bool speaks_on_change = false;  ///< a silence means that the wind is unchanged
+  bool reports_on_change = false;  ///< a silence means that the wind is unchanged
 };
 
 auto of(auto member) {
@@ -85,7 +85,7 @@ const Fields<OscSettings> kOscFields = {
       .default_value = false,
       .help = "the sender sends only changes: without messages the wind counts as unchanged, for as long as `silence`, "
               "which must be longer than the longest calm"},
-     &OscSettings::speaks_on_change},
+     &OscSettings::reports_on_change},
 };
 
 std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t which) {
@@ -238,7 +238,7 @@ sensor::ValueSelection osc_selection(const ParameterValues& values) {
 
 double osc_unchanged_for_s(const ParameterValues& values) {
   const OscSettings settings = kOscFields.of(values);
-  return settings.speaks_on_change ? seconds(settings.silence) : 0.0;
+  return settings.reports_on_change ? seconds(settings.silence) : 0.0;
 }
 
 Result<sensor::SimulatedDevice, Failure> osc_simulated(const ParameterValues& values) {

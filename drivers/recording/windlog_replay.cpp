@@ -221,7 +221,7 @@ std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   if (file.empty()) throw std::runtime_error("windlog: file: name the recording to play");
   if (!windlog::recording_exists(file)) {
     throw std::runtime_error("windlog: file: " + file.string() +
-                             ": there is no such recording; `yuragi run --record FILE` or `yuragi import` makes one");
+                             ": the recording does not exist; `yuragi run --record FILE` or `yuragi import` makes one");
   }
   value_of("start", windlog::check_playback_start(keys.options.playback.start));
   keys.options.recorded_offset = value_of("utc_offset", windlog::parse_utc_offset(keys.utc_offset));

@@ -302,7 +302,7 @@ Nanoseconds TextSensor::silence_limit() const {
 void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
-  if (const std::string told = told_trouble(); !told.empty()) return report_unusable(sink, told);
+  if (const std::string told = reported_trouble(); !told.empty()) return report_unusable(sink, told);
   if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
   const decode::Refusal why = main_refusal();
   const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;

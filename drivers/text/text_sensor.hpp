@@ -61,7 +61,7 @@ class TextSensor : public sensor::ReopeningSensor {
   virtual std::string name() const = 0;
   /// Returns a trouble that the device itself reports, and what to do; empty: none. Reported before the causes that its
   /// silence or its lines suggest.
-  virtual std::string told_trouble() const { return {}; }
+  virtual std::string reported_trouble() const { return {}; }
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
 

@@ -35,6 +35,6 @@ inline constexpr double kMaxPlausibleSpeed_m_s = 120.0;
 bool is_plausible(const WindReading& reading) noexcept;
 
 /// Have both the same speed, direction and gust, bit for bit?
-bool says_the_same(const WindReading& a, const WindReading& b) noexcept;
+bool has_same_values(const WindReading& a, const WindReading& b) noexcept;
 
 }  // namespace yuragi::wind

@@ -119,7 +119,7 @@ class EcowittPushSimulator::State {
 
   std::string status() const {
     return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {}{}{}", moment_.speed_m_s, moment_.direction_deg,
-                       count_text(pushed_, "request"), last_answer_.empty() ? "no answer" : last_answer_,
+                       count_text(pushed_, "request"), last_answer_.empty() ? "no reply" : last_answer_,
                        fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
   }
 

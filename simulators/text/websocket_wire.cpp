@@ -57,7 +57,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
     send_next();
   }
   /// Returns the messages that it has sent, each with a line's end.
-  std::string take_said() { return std::exchange(said_, {}); }
+  std::string take_received() { return std::exchange(received_, {}); }
   bool has_spoken() const { return has_spoken_; }
   bool has_ended() const { return has_ended_; }
   void end() {
@@ -98,7 +98,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->end();
       self->has_spoken_ = true;
-      self->said_ += beast::buffers_to_string(self->buffer_.data()) + '\n';
+      self->received_ += beast::buffers_to_string(self->buffer_.data()) + '\n';
       self->buffer_.clear();
       self->listen();
     });
@@ -121,7 +121,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   beast::flat_buffer buffer_{kMaxSaid};
   http::request<http::empty_body> request_;
   std::deque<Frame> waiting_;
-  std::string said_;
+  std::string received_;
   bool has_spoken_ = false;
   bool is_accepted_ = false;
   bool is_sending_ = false;
@@ -158,7 +158,7 @@ class WebSocketWire final : public TextWire {
     }
     turn();
     std::string received;
-    for (const auto& peer : peers_) received += peer->take_said();
+    for (const auto& peer : peers_) received += peer->take_received();
     std::erase_if(peers_, [](const auto& peer) { return peer->has_ended(); });
     return received;
   }

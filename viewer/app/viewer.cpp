@@ -45,7 +45,7 @@ constexpr int kOverlayPictures = 2;     // the overlay's size is known after the
 constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // fade of the light while a person moves a handle of the panel
-constexpr double kAgeSaid_s = stream::PictureAge::kSpan_s;
+constexpr double kAgeLogInterval_s = stream::PictureAge::kSpan_s;
 constexpr int kMeasuredEvery = 3;   // pictures of a graphics card: to wait for one costs a little
 constexpr double kDimming_s = 0.5;  // the brightness continues for this long between two of the daemon's statuses
 
@@ -158,8 +158,8 @@ class Viewer::Show {
   }
 
   /// At the end.
-  void say_last_age() {
-    if (options_.says_age) say_age();
+  void log_last_age() {
+    if (options_.logs_age) log_age();
   }
 
   void run_screenshot() {
@@ -235,10 +235,10 @@ class Viewer::Show {
   }
 
   /// Logs a change of the quality.
-  void tell_quality() {
+  void log_quality() {
     pace::PaceStep step = pace_ ? pace_->step() : pace::PaceStep{};
     step.quality = renderer_->quality();
-    if (step == told_) return;
+    if (step == logged_step_) return;
     const std::string text = pace::quality_text(step.quality, step.part, step.refreshes);
     std::string reason;
     if (pace_ && pace_->is_held()) {
@@ -248,7 +248,7 @@ class Viewer::Show {
                            1e3 * pace_->picture_s());
     }
     std::fprintf(stderr, "yuragi-viewer: %s%s\n", text.c_str(), reason.c_str());
-    told_ = step;
+    logged_step_ = step;
   }
 
   /// Returns true while two pictures are mixed for some seconds: of two cameras, or of scenes that fade.
@@ -269,9 +269,9 @@ class Viewer::Show {
   void agree_with_wall() {
     pace_->hold(sensors_->given_up);
     const std::uint8_t own = pace_->given_up();
-    if (own == said_given_up_ && own <= sensors_->given_up) return;
+    if (own == sent_given_up_ && own <= sensors_->given_up) return;
     connection_.send(wire::Display{.given_up = own});
-    said_given_up_ = own;
+    sent_given_up_ = own;
   }
 
   /// How much is drawn of the next picture, after one of this size.
@@ -391,7 +391,7 @@ class Viewer::Show {
       }
     }
     director_->advance(passed_s, utc_s_, moment_->wind.wind);
-    tell_quality();
+    log_quality();
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
     std::rotate(picture_times_ms_.begin(), picture_times_ms_.begin() + 1, picture_times_ms_.end());
     picture_times_ms_.back() = static_cast<float>(1e3 * passed_s);
@@ -483,12 +483,12 @@ class Viewer::Show {
   /// Call when the picture was handed to the display, which needs `display_s` to show it.
   void note_age(double display_s) {
     if (timeline_.playback() == stream::Playback::kLive) age_.take_picture(*moment_, now_s(), display_s);
-    if (options_.says_age && now_s() - age_said_s_ >= kAgeSaid_s) say_age();
+    if (options_.logs_age && now_s() - age_logged_s_ >= kAgeLogInterval_s) log_age();
   }
 
-  void say_age() {
-    age_said_s_ = now_s();
-    const auto age = age_.figures(age_said_s_);
+  void log_age() {
+    age_logged_s_ = now_s();
+    const auto age = age_.figures(age_logged_s_);
     std::fprintf(stderr, "yuragi-viewer: %s\n", age ? age_text(*age).c_str() : "no reading has been shown");
   }
 
@@ -518,15 +518,15 @@ class Viewer::Show {
 
   Watchdog watchdog_;
   bool is_software_ = false;
-  std::optional<pace::PaceKeeper> pace_;                  // of a window: a picture in a file is drawn in full
-  pace::PaceStep told_{.quality = look::Quality::kAuto};  // in the log
+  std::optional<pace::PaceKeeper> pace_;                         // of a window: a picture in a file is drawn in full
+  pace::PaceStep logged_step_{.quality = look::Quality::kAuto};  // in the log
   PixelSize paced_size_;
-  std::uint8_t said_given_up_ = 0;  // to the daemon
+  std::uint8_t sent_given_up_ = 0;  // to the daemon
   int measured_pictures_ = 0;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
   stream::PictureAge age_;
-  double age_said_s_ = now_s();
+  double age_logged_s_ = now_s();
   const stream::PoseMoment* moment_ = nullptr;
   std::optional<wire::Sensors> sensors_;
   double began_s_;
@@ -558,7 +558,7 @@ Viewer::~Viewer() = default;
 
 void Viewer::run() {
   is_picture_ ? show_->run_screenshot() : show_->run_window();
-  show_->say_last_age();
+  show_->log_last_age();
 }
 
 }  // namespace yuragi::viewer::app

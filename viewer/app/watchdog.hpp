@@ -23,7 +23,7 @@ class Watchdog {
  private:
   platform::NotifySocket socket_;
   std::optional<double> interval_s_;  ///< nullopt: no watchdog is set
-  std::optional<double> said_s_;
+  std::optional<double> sent_s_;
 };
 
 }  // namespace yuragi::viewer::app

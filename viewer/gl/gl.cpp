@@ -188,8 +188,8 @@ bool is_software_renderer() {
 }
 
 bool is_context_lost() {
-  static const bool is_told = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
-  return is_told && glGetGraphicsResetStatus() != GL_NO_ERROR;
+  static const bool reports_reset = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
+  return reports_reset && glGetGraphicsResetStatus() != GL_NO_ERROR;
 }
 
 void report_gl_errors() {

@@ -23,7 +23,7 @@ struct ViewerOptions {
   std::string output;           ///< its name; empty: the first
   bool has_test_card = false;   ///< instead of the picture
   bool lists_monitors = false;  ///< and no more
-  bool says_age = false;        ///< logs the age of the readings in the pictures
+  bool logs_age = false;        ///< logs the age of the readings in the pictures
   bool is_turning = false;
   bool is_dark_when_closed = false;
   std::vector<std::string> look;  ///< "time=06:30": overrides the daemon's look

@@ -135,7 +135,7 @@ class StreamConnection::Session {
   void open(std::uint64_t attempt, const tcp::resolver::results_type& found) {
     asio::async_connect(socket_, found, [this, attempt](error_code error, const tcp::endpoint&) {
       if (attempt != attempt_) return;
-      if (error) return give_up(fmt::format("no daemon answers at {}: {}", address(), error.message()));
+      if (error) return give_up(fmt::format("no daemon replies at {}: {}", address(), error.message()));
       subscribe(attempt);
     });
   }

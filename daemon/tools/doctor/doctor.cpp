@@ -62,7 +62,7 @@ std::vector<Finding> examine(const Examination& examination, const std::function
   begin("the devices that are plugged in");
   const auto plugged = sensors::find_devices(drivers::sensor::driver_table());
   if (examination.config) {
-    begin("the sensors' devices, up to 2 s for each that does not answer");
+    begin("the sensors' devices, up to 2 s for each that does not reply");
     for (const DeviceFacts& device : probe_devices(config, plugged, running, kNetworkTimeout))
       all.push_back(judge(device));
   }

@@ -151,7 +151,7 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-bool speaks_of_a_secret(std::string_view part) {
+bool names_a_secret(std::string_view part) {
   std::string words = percent_decoded(part);
   std::ranges::transform(words, words.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -201,7 +201,7 @@ std::string without_push_secrets(std::string_view form) {
   for_each_part(form, [&](std::string_view part) {
     if (!is_first) shown += '&';
     is_first = false;
-    if (!speaks_of_a_secret(part)) {
+    if (!names_a_secret(part)) {
       shown += part;
       return true;
     }

@@ -39,7 +39,7 @@ bool is_unit(std::string_view word) {
   return unit_named(word, false) || unit_named(word, true);
 }
 
-bool says_nothing(std::string_view text) {
+bool is_missing_value(std::string_view text) {
   return text.empty() || text == "nan" || text == "NaN" || text == "NAN" || text == "null";
 }
 
@@ -59,7 +59,7 @@ LineValue scaled(const LineOptions& options, const LineQuantity& quantity, doubl
 }
 
 LineValue value_of(const LineOptions& options, const LineQuantity& quantity, const LineText& text, bool is_direction) {
-  if (says_nothing(text.number)) return std::optional<double>();
+  if (is_missing_value(text.number)) return std::optional<double>();
   const auto number = parse_number(text.number);
   if (!number) return number.error();
   const std::optional<double> unit = unit_named(text.unit, is_direction);

@@ -108,7 +108,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
     site_fit_.break_off();
   }
 
-  const bool repeats = !is_first && says_the_same(reading, *record_.last());
+  const bool repeats = !is_first && has_same_values(reading, *record_.last());
   const bool is_new = record_.take(reading);
   if (!is_new && repeats) return true;
   wind_ = reading.speed_m_s * direction_.take(reading, gap_s, around.ahead, around.is_direction_live);

@@ -20,7 +20,7 @@ class SourceRecord {
   /// Takes a plausible reading, not older than the last. Returns whether it is a new one (ReadingInterval::take).
   bool take(const WindReading& reading) noexcept {
     const bool is_new =
-        !last_ || interval_.take(seconds(reading.time.mono - last_->time.mono), says_the_same(reading, *last_));
+        !last_ || interval_.take(seconds(reading.time.mono - last_->time.mono), has_same_values(reading, *last_));
     last_ = reading;
     return is_new;
   }

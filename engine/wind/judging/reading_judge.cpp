@@ -76,7 +76,7 @@ void ReadingJudge::recalibrate(const WindReading& before, const WindReading& aft
   believed_ = 0;
   suspicion_.reset();
   if (fault_ == ReadingFault::kSpike) fault_ = ReadingFault::kNone;
-  if (same_ && says_the_same(*same_, before)) same_ = after;
+  if (same_ && has_same_values(*same_, before)) same_ = after;
   if (!(before.speed_m_s > 0.0) || !(after.speed_m_s > 0.0)) return;
   const double factor = after.speed_m_s / before.speed_m_s;
   resolution_m_s_ *= factor;
@@ -172,7 +172,7 @@ void ReadingJudge::count(bool is_bad) noexcept {
 }
 
 bool ReadingJudge::check_frozen(const WindReading& reading, double time_s) noexcept {
-  if (!same_ || !says_the_same(reading, *same_)) {
+  if (!same_ || !has_same_values(reading, *same_)) {
     if (same_) {
       const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);
       if (step_m_s > 0.0) resolution_m_s_ = resolution_m_s_ > 0.0 ? std::min(resolution_m_s_, step_m_s) : step_m_s;
