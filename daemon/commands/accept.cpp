@@ -85,7 +85,7 @@ class OwnDaemon {
   OwnDaemon(const OwnDaemon&) = delete;
   OwnDaemon& operator=(const OwnDaemon&) = delete;
 
-  /// Lets the measurement take what comes for `time_s`, or until `is_enough`.
+  /// Passes incoming readings to the measurement for `time_s`, or until `is_enough`.
   template <class IsEnough>
   void measure(tools::acceptance::SensorMeasurement& measurement, double time_s, IsEnough is_enough) {
     const MonoTime end = clock_.now().mono + from_seconds(time_s);
@@ -123,7 +123,7 @@ std::optional<tools::acceptance::NorthCheck> check_north(OwnDaemon& daemon,
     std::getline(std::cin, line);
     return line;
   });
-  // What comes meanwhile is read: a client that does not read is let go.
+  // Messages are read meanwhile: a client that does not read is disconnected.
   tools::acceptance::SensorMeasurement meanwhile(sensor);
   daemon.measure(meanwhile, kPersonsTime_s,
                  [&] { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });

@@ -29,7 +29,7 @@ void end_worker(int /*signal*/) {
   is_worker_over = true;
 }
 
-/// Keeps what libraries print out of the frames: redirects standard output to standard error, and that to /dev/null
+/// Keeps the output of libraries out of the frames: redirects standard output to standard error, and that to /dev/null
 /// unless it is wanted (ALSA prints much about each device that it tries). Returns the original standard output.
 int take_output(bool verbose) {
   const int output = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);

@@ -74,7 +74,7 @@ settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) 
   return settings::default_sensor(options.file.stem().string(), windlog, *values);
 }
 
-/// The whole installation as the recording holds it. Logs what is not as it was.
+/// The whole installation, from the recording. Logs the differences from the recorded one.
 sensing::RecordedInstallation installation_of(const ReplayOptions& options, double rate) {
   if (options.run.config_file) {
     throw ExitError(kExitUsage, "--as-recorded uses the recording's own configuration: remove --config");

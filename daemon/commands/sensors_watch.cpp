@@ -41,7 +41,7 @@ struct WatchOptions {
   std::string sensor;  ///< of raw messages; empty: all
 };
 
-/// When watching ends by itself.
+/// The end of watching, if it is limited.
 class Deadline {
  public:
   explicit Deadline(const std::optional<double>& duration_s) : duration_s_(duration_s), begun_(clock_.now().mono) {}

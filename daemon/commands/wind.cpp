@@ -181,7 +181,7 @@ class Table {
     text_ += ',';
     add_number(value, digits_after_point);
   }
-  /// Most of what a table with many places costs.
+  /// Most of the cost of a table with many places.
   void add_number(double value, int digits_after_point) {
     std::array<char, 400> digits{};  // of any number
     const auto end =

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kShownKey = "shown";
 
-/// What was done, for a person.
+/// A text about the changes, for a person.
 std::string told(const std::vector<std::string>& changes) {
   if (changes.empty()) return "nothing has changed";
   return fmt::format("{} (until the configuration is read again)", fmt::join(changes, "; "));
@@ -43,7 +43,7 @@ void ParameterDirector::handle(const wire::ParameterCommand& command, bool is_lo
   for (const wire::ParameterEdit& edit : command.edits) edits.push_back({command.scene, edit.key, edit.value});
   if (auto mistake = reload_.mistake_in(edits)) return answer(false, std::move(*mistake));
 
-  // What is shown is switched as by any other client, independent of the configuration.
+  // Showing scenes is switched as by any other client, independent of the configuration.
   std::vector<std::string> done;
   const auto is_shown_key = [](const settings::ParameterEdit& edit) { return edit.key == kShownKey; };
   if (!command.scene.empty()) {

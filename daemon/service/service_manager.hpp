@@ -11,8 +11,8 @@
 namespace yuragi::daemon::service {
 
 /// Reports to systemd that the daemon is ready, a line on its state, that it ends, and that it is alive.
-/// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: what a service manager that
-/// hangs does not take is sent again later. For the I/O thread.
+/// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: a message that a hanging
+/// service manager does not take is sent again later. For the I/O thread.
 class ServiceManager {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
@@ -29,7 +29,8 @@ class ServiceManager {
   /// STOPPING=1.
   void report_stopping(const std::string& why);
 
-  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog if that is due.
+  /// Call when the I/O thread has completed a round; `animation_ticks`: the animation's ticks so far. Feeds the
+  /// watchdog if that is due.
   void went_round(MonoTime now, std::uint64_t animation_ticks);
 
  private:

@@ -7,8 +7,8 @@
 
 namespace yuragi::daemon::stream {
 
-/// How many lines others may cause in the log: a token bucket. `burst` lines at once, and `per_s` in the long run; what
-/// is left out is counted. Pure: time is a parameter. Thread-safe: no. Realtime-safe: yes.
+/// Limits the lines that clients cause in the log: a token bucket. `burst` lines at once, and `per_s` in the long run;
+/// omitted lines are counted. Pure: time is a parameter. Thread-safe: no. Realtime-safe: yes.
 class LogAllowance {
  public:
   struct Settings {

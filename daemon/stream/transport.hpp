@@ -38,8 +38,8 @@ class Transport {
 
   /// Returns the number of clients that are connected.
   virtual std::size_t client_count() const = 0;
-  /// Returns true if any of them has not the rights of this machine: it is on another one, or shows no token if one is
-  /// required.
+  /// Returns true if any client does not have the rights of this machine: it is on another one, or sends no token if
+  /// one is required.
   virtual bool has_untrusted_clients() const = 0;
 
   /// Closes all connections and accepts no more. A second call does nothing.

@@ -88,10 +88,9 @@ struct Subscribe {
   bool poses = true;
   bool sensors = false;
   std::string client;
-  bool raw = false;             ///< RawTrace
-  std::string raw_sensor = {};  ///< of this sensor only; empty: of every sensor
-  bool takes_new_scenes =
-      false;  ///< the client accepts Scenes again; otherwise it is disconnected when the scenes change
+  bool raw = false;               ///< RawTrace
+  std::string raw_sensor = {};    ///< of this sensor only; empty: of every sensor
+  bool takes_new_scenes = false;  ///< accepts Scenes again; otherwise disconnected when the scenes change
   Thinning thinning = {};
   double rate_hz = 0.0;  ///< maximum frames per second, up to kMaxRate_hz; 0: all
   Secret token = {};     ///< the installation's; empty: none is sent

@@ -12,7 +12,7 @@ namespace yuragi::daemon::tools::csv {
 Result<CsvZone, Failure> CsvZone::parse(std::string_view text) {
   CsvZone zone;
   zone.name_ = without_blanks(text);
-  // As it would stand behind a time.
+  // As it would follow a time.
   const auto written = parse_time("2000-01-01 00:00 " + zone.name_, CsvTimeFormat::kIso);
   if (written && written->utc_offset) {
     zone.offset_ = *written->utc_offset;
