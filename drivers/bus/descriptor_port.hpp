@@ -7,8 +7,8 @@
 
 namespace yuragi::drivers::bus {
 
-/// What byte ports with a file descriptor have in common: reading, writing and being interrupted. What a kind of port
-/// adds is how to open it.
+/// The common part of byte ports with a file descriptor: reading, writing and being interrupted. A kind of port adds
+/// how to open it.
 class DescriptorPort : public BytePort {
  public:
   explicit DescriptorPort(const BytePortAddress& address) : address_(address) {}

@@ -38,7 +38,7 @@ bool senders_cover(const std::string& wide, const std::string& narrow);
 /// IPv4 addresses that came through an IPv6 socket look like it; people write them as they are.
 boost::asio::ip::address plain_address(const boost::asio::ip::address& address);
 
-/// Can only programs of this machine send to it? Fails if it is no address.
+/// Returns true if only programs of this machine can send to it. Fails if it is not an address.
 Result<bool, Failure> is_loopback(const std::string& address);
 
 }  // namespace yuragi::drivers::bus

@@ -11,10 +11,10 @@ namespace {
 
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kMaxSlaveWait = std::chrono::seconds(10);
-/// For what is recorded only, so that a device without it is hardly asked for it.
+/// For recorded quantities only, so that a device without them is rarely asked.
 constexpr Nanoseconds kMaxQuantitiesWait = std::chrono::minutes(10);
 
-/// Does a gateway report that a slave does not reply?
+/// Returns true if a gateway reports that a slave does not reply.
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
   return trouble.kind == ModbusTrouble::Kind::kRefused && trouble.refusal.why == decode::Refusal::kException &&
          decode::modbus::is_gateway_silence(trouble.refusal.exception);

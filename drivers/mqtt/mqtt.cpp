@@ -29,7 +29,7 @@
 namespace yuragi::drivers::mqtt {
 namespace {
 
-/// A look at the clock at least so often.
+/// The clock is checked at least this often.
 constexpr Nanoseconds kMqttWait = std::chrono::milliseconds(250);
 
 using bus::MqttSubscription;
@@ -164,7 +164,7 @@ const Fields<MqttKeys> kMqttFields = {
      [](std::int64_t time_s) { return std::chrono::seconds(time_s); }},
 };
 
-/// A direction or gust that has come, and when. It is kept for the speeds that come without one.
+/// The last direction or gust, and its time. It is kept for speeds that arrive without one.
 struct HeldValue {
   std::optional<double> value;
   MonoTime since{};
@@ -177,7 +177,7 @@ std::string shown(const std::string& text) {
   return shortened(printable, 20);
 }
 
-/// Does any of the sources read JSON?
+/// Returns true if any of the sources reads JSON.
 PayloadForm form_of(const MqttSettings& settings) {
   for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
     if (std::ranges::any_of(source->places, &MqttPlace::is_json)) return PayloadForm::kJson;
@@ -265,7 +265,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     if (!direction && !gust && !has_quantities) sink.refused(decode::Refusal::kNotMine);
   }
 
-  /// Does the message come from the station that is read? Where publishers name none, always.
+  /// Returns true if the message comes from the selected station; always true if publishers name none.
   bool is_of_the_station(const Payload& payload, MonoTime now) {
     if (!settings_.preset->names_stations || !payload.json().is_object()) return true;
     const StationIdentity station = station_of(payload);
@@ -310,7 +310,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     is_impossible_ = said.value && !direction_.value;
     if (is_impossible_) sink.refused(decode::Refusal::kImplausible);
   }
-  /// False: it is impossible, and not kept.
+  /// Returns false if it is impossible; then it is not kept.
   bool hold_gust(const HeldValue& said) {
     gust_ = said;
     if (!said.value) return true;
@@ -369,10 +369,10 @@ class MqttSensor final : public sensor::ReopeningSensor {
   std::string note_;  // why messages cannot be read, for the status; empty: they can
   sensor::ReadingLimit limit_;
   bool has_received_ = false;  // of the wind, since it connected
-  MonoTime received_at_{};     // or since when it could have
+  MonoTime received_at_{};     // or since when wind could have been received
 };
 
-/// Throws, naming the setting, for what can be neither subscribed to nor found.
+/// Throws, naming the setting, if a topic cannot be subscribed to, or a value not found.
 void check_source(std::string_view name, const MqttSource& source) {
   if (!source.topic.empty() && !bus::is_mqtt_filter(source.topic)) {
     throw std::runtime_error(

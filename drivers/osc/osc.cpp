@@ -28,9 +28,9 @@
 namespace yuragi::drivers::osc {
 namespace {
 
-/// A look at the clock at least so often.
+/// The clock is checked at least this often.
 constexpr Nanoseconds kOscWait = std::chrono::milliseconds(250);
-/// The time tag of a message may be so far ahead of our clock.
+/// Limit for the time tag of a message ahead of our clock.
 constexpr Nanoseconds kFarthestAhead = std::chrono::seconds(1);
 
 struct OscSettings {
@@ -197,10 +197,10 @@ class OscSensor final : public sensor::ReopeningSensor {
   std::unique_ptr<bus::BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kMaxDatagram);
   sensor::ReadingLimit limit_;
-  std::string strangers_;      // who was refused first, for the status; empty: nobody
+  std::string strangers_;      // the first refused sender, for the status; empty: none
   std::string future_;         // how far ahead the first was that was refused for its time; empty: none
   bool has_received_ = false;  // of the wind, since it has the port
-  MonoTime received_at_{};     // or since when it could have
+  MonoTime received_at_{};     // or since when wind could have been received
 };
 
 /// Throws, naming the setting, if it is not set who may send.

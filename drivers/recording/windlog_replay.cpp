@@ -125,7 +125,7 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
   /// The states that are reported by the link.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
-  /// Plays what is due; returns when the next reading is due.
+  /// Plays the readings that are due; returns when the next one is due.
   Result<MonoTime, Failure> play(const Instant& now, sensor::SensorSink& sink) {
     if (!player_) {
       auto opened = windlog::WindlogPlayer::open(file_, options_, now, stop_.get_token());
@@ -228,7 +228,7 @@ std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   return play_recording(file, std::move(keys.options));
 }
 
-/// The same readings may be played from two places on.
+/// The same readings can be played from two positions.
 sensor::ValueSelection windlog_selection(const ParameterValues& values) {
   const ReplayKeys keys = kWindlogFields.of(values);
   std::error_code error;

@@ -183,7 +183,7 @@ std::optional<sensor::StatedValue> nmea_value(const ParameterValues& values) {
   return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = "Vaisala M211840EN: Sm"};
 }
 
-/// What yuragi-sim sends for the formats and sentences that a sensor takes.
+/// The formats for yuragi-sim, for a sensor's formats and sentences.
 std::string simulated_formats(const ParameterValues& values) {
   const std::string& format = values.text("format");
   if (format != "auto" && format != "nmea") return format;

@@ -133,7 +133,7 @@ class TextSensor : public sensor::ReopeningSensor {
   std::size_t late_lines_ = 0;
 };
 
-/// Is every byte one that text has? NUL, STX, ETX and tab may be among them.
+/// Returns true if every byte is one of text, including NUL, STX, ETX and tab.
 bool is_text(std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::text

@@ -28,7 +28,7 @@ class UsbHost {
     return last_id_;
   }
 
-  /// Drops a transfer that waits, without calling its function. False: it is not waiting.
+  /// Drops a transfer that waits, without calling its function. Returns false if it is not waiting.
   bool cancel(std::uint64_t id) {
     port_.cancel(id);
     return waiting_.erase(id) != 0;
