@@ -191,7 +191,7 @@ void replay(const ReplayOptions& options) {
     return;
   }
   drivers::windlog::WindlogPlayback::open(options.file, options.playback)
-      .value();  // fails now; the daemon would wait for the file
+      .value();  // fails immediately, while a daemon would wait for the file
   if (options.rate == "max") return replay_at_full_speed(options);
 
   settings::Config config = options.run.config();

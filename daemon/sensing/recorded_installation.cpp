@@ -143,18 +143,19 @@ Result<RecordedInstallation, Failure> recorded_installation(const std::filesyste
 
   bool is_any_played = false;
   for (settings::SensorConfig& sensor : installation.config.sensors) {
-    const auto speaks = has_readings_after(*reader, sensor.name, *begin);
-    if (!speaks) return speaks.error();
-    is_any_played = is_any_played || *speaks;
-    if (!*speaks) installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));
+    const auto has_readings = has_readings_after(*reader, sensor.name, *begin);
+    if (!has_readings) return has_readings.error();
+    is_any_played = is_any_played || *has_readings;
+    if (!*has_readings)
+      installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));
     sensor.blend.unchanged_for_s /= options.rate;
     drivers::windlog::PlayerOptions of_sensor = options;
     of_sensor.playback.sensor = sensor.name;
     of_sensor.stays_with_others = true;
     sensor.stand_in = settings::StandIn{
         .recording = recording,
-        .open = [recording, of_sensor, speaks = *speaks]() -> std::unique_ptr<drivers::sensor::Sensor> {
-          if (!speaks) return std::make_unique<SilentSensor>();
+        .open = [recording, of_sensor, has_readings = *has_readings]() -> std::unique_ptr<drivers::sensor::Sensor> {
+          if (!has_readings) return std::make_unique<SilentSensor>();
           return drivers::recording::play_recording(recording, of_sensor);
         }};
   }

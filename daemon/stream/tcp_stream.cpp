@@ -481,7 +481,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
       if (overdue == Overdue::kNeverSubscribed || overdue == Overdue::kIdle) ++feed_->counts.idle;
     });
     forget_closed();
-    feed_->log->take_left_out();
+    feed_->log->report_left_out();
     check_timer_.expires_after(feed_->settings.check_every);
     check_timer_.async_wait([self = shared_from_this()](const error_code&) {
       if (!self->closed_) self->check_clients();

@@ -32,8 +32,8 @@ class Transport {
   virtual void publish_scenes(SharedBytes scenes) = 0;
 
   /// The newest state of the sensors (an encoded wire::Sensors): one message for clients of this machine, and one for
-  /// those of others, which get less. `elsewhere` may be null while has_untrusted_clients() is false; a client
-  /// that would need it waits for the next one.
+  /// those of others, which get less. `elsewhere` can be null while has_untrusted_clients() is false; a client that
+  /// would need it waits for the next one.
   virtual void publish_sensors(SharedBytes here, SharedBytes elsewhere) = 0;
 
   /// Returns the number of clients that are connected.

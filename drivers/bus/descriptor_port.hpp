@@ -29,7 +29,7 @@ class DescriptorPort : public BytePort {
   Interruption interruption_;
 };
 
-// One kind each, in a file of its own.
+// Each makes one kind of port, in a separate file.
 std::unique_ptr<BytePort> make_serial_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_tcp_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_udp_port(const BytePortAddress& address);

@@ -143,7 +143,7 @@ ModbusBus::Reply ModbusSensor::exchange(const Read& read, const sensor::Clock& c
 }
 
 MonoTime ModbusSensor::go_on(const Instant& now, sensor::SensorSink& sink) {
-  // The reads that are due and have not been made in this round. The wind does not wait for the rest.
+  // The due reads of this round that are not yet done. The wind does not wait for them.
   for (++step_; step_ <= reads_.size(); ++step_) {
     if (step_ == wind_reads_) publish_wind(sink);
     if (step_ == reads_.size() || (step_ >= wind_reads_ && !takes_quantities_)) break;

@@ -58,7 +58,7 @@ struct HttpLimits {
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 16UL * 1024;
   std::size_t connections = 16;
-  /// For a connection from its beginning to its end, however busy it is.
+  /// Maximum duration of a connection, even if it is busy.
   Nanoseconds time = std::chrono::seconds(10);
 };
 

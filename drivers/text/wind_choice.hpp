@@ -62,7 +62,7 @@ class WindChoice {
   /// Between the last two of its directions; zero before.
   Nanoseconds direction_pause() const noexcept { return direction_.pause; }
 
-  /// The device was opened again: its sources of the speed begin anew. Its frame of direction stays.
+  /// The device was opened again: its sources of the speed start again. Its frame of direction stays.
   void restart() noexcept;
 
  private:

@@ -37,7 +37,7 @@ std::string view_of(std::int64_t series) {
   return view;
 }
 
-/// Is it an empty database, or a recording that this version writes?
+/// Returns true for an empty database, and for a recording that this version writes.
 Result<bool, Failure> is_new(sqlite::Database& database) {
   const std::string name = database.file().string();
   const auto format = format_of(database);

@@ -21,7 +21,7 @@ constexpr std::size_t kStrip = 16;
 struct StripColumns {
   alignas(64) std::uint32_t west[kStrip];
   alignas(64) float fraction[kStrip];
-  bool wraps = false;    ///< one is behind the last sample, whose east is the first
+  bool wraps = false;    ///< a column is after the last sample, whose east neighbour is the first
   bool is_near = false;  ///< all samples for a register are in its window
   /// The begin of the 2 kLaneCount samples that contain those for a register.
   std::uint32_t window[kStrip / math::kLaneCount];

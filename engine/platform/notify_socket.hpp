@@ -34,10 +34,9 @@ class NotifySocket {
 /// The service manager's socket and watchdog, from the environment. To be read during set-up, when no thread changes
 /// the environment.
 struct ServiceEnvironment {
-  std::string socket_name;  ///< NOTIFY_SOCKET; empty: none
-  std::optional<Nanoseconds>
-      watchdog;         ///< WATCHDOG_USEC: timeout; nullopt if it is missing, not a number, or over 11 days
-  bool is_ours = true;  ///< WATCHDOG_PID is this process, or is absent
+  std::string socket_name;              ///< NOTIFY_SOCKET; empty: none
+  std::optional<Nanoseconds> watchdog;  ///< WATCHDOG_USEC; nullopt if missing, not a number, or over 11 days
+  bool is_ours = true;                  ///< WATCHDOG_PID is this process, or is absent
 
   static ServiceEnvironment read();
 };

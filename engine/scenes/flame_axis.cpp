@@ -38,8 +38,7 @@ constexpr std::size_t kWobbleSamples = 128;
 constexpr double kWobblePeriod_s = 12.8;
 constexpr double kWobbleFrom = 8.0;  ///< waves a tile
 constexpr double kWobbleTo = 32.0;
-constexpr noise::TorusPhase kSouthOfEast{0x5a000000U,
-                                         0x93000000U};  ///< the place at which the second component is read
+constexpr noise::TorusPhase kSouthOfEast{0x5a000000U, 0x93000000U};  ///< of the second component
 
 noise::NoiseTile2 wobble_tile(std::uint64_t seed) {
   noise::NoiseTile2 tile = noise::make_noise_2d({.size = kWobbleSamples,

@@ -107,8 +107,7 @@ class GustNodes {
 
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   SimdRow row_;
-  std::array<float, 2 * wind::turbulence::GustNoise::kTileOctaves>
-      held_{};  ///< share of an octave that the nodes can represent
+  std::array<float, 2 * wind::turbulence::GustNoise::kTileOctaves> held_{};  ///< share of an octave on the nodes
   Nodes fine_, coarse_;
   std::vector<float> envelope_;  ///< at the coarse nodes
   std::vector<Between> columns_, lines_;

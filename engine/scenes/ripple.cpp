@@ -303,7 +303,7 @@ class Ripple final : public Scene {
   CarriedPlaces gust_places_;
   std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, if there is one
   RoughWater rough_;
-  std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< a node of rough_ each
+  std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< one per node of rough_
   double height_per_slope_m_ = 0.0;
   std::vector<float> noise_, slope_;  ///< a point each
   pose::Skeleton skeleton_;

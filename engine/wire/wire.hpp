@@ -120,9 +120,8 @@ struct FrameInfo {
 
 struct Frame {
   FrameInfo info;
-  std::vector<pose::Pose>
-      poses;  ///< padded to whole blocks with zeros; a hidden scene's is a StrandPose of zero strands
-  std::vector<float> opacities;  ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
+  std::vector<pose::Pose> poses;  ///< padded with zeros; a hidden scene's has zero strands
+  std::vector<float> opacities;   ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
 };
 
 /// A quantity of a sensor's readings besides the speed, and whether it is still sent.
@@ -176,7 +175,7 @@ struct Shaping {
   double openness = 1.0;  ///< 0: closed, 1: open
 };
 
-/// How late something was that has its time, in the last 10 minutes.
+/// Lateness of scheduled work, in the last 10 minutes.
 struct Lateness {
   double p50_s = 0.0;
   double p99_s = 0.0;

@@ -89,7 +89,7 @@ bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
 void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
   std::vector<std::unique_ptr<SceneView>> before = std::exchange(views_, {});
   scenes_.clear();
-  ground_.set_standing({});  // it refers to the skeletons
+  ground_.set_standing({});  // because it refers to the skeletons
   for (wire::SceneModel& scene : scenes) {
     const auto same = std::ranges::find_if(before, [&](const auto& view) {
       return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton &&

@@ -22,7 +22,7 @@ struct Ground {
                                 ///< MeadowWaves, 0 if it is streamed; of no use
   glm::vec4 bends_axes{
       0.0F};  ///< a matrix, column by column: from metres behind that corner to parts of the grid's sides
-  glm::vec4 bend_mean{0.0F};                 ///< east, south, radians; of no use; w: share of tall grass
+  glm::vec4 bend_mean{0.0F};                 ///< east, south, radians; unused; w: share of tall grass
   glm::vec4 growth_place{0.0F};              ///< x, z of the low corner of the map of growth, metres; 1 / its sides
   glm::vec4 stand{0.6F, 0.6F, 0.0F, 0.14F};  ///< tall grass: mean length, metres; curl, radians; number of the
                                              ///< ScreenDoor through which it fades; tilt, radians

@@ -17,7 +17,7 @@ double back_and_forth_s(double elapsed_s, double span_s);
 class PoseTrack {
  public:
   static constexpr double kReplaySpan_s = 4.0;
-  static constexpr double kMinSilence_s = 0.5;  ///< no frame for so long (or four intervals): the stream has stopped
+  static constexpr double kMinSilence_s = 0.5;  ///< no frame for this long (or four intervals): the stream has stopped
   static constexpr double kMaxPlayRate = 1.3;   ///< rate of the sender's time line against ours while catching up
   static constexpr double kMinPlayRate = 0.7;
 

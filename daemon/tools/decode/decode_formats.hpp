@@ -38,7 +38,7 @@ struct UnitReading {
 /// Why a message has no reading.
 struct UnitRefusal {
   drivers::decode::Refusal why = drivers::decode::Refusal::kMalformed;
-  std::string detail;  ///< more about it, for people; may be empty
+  std::string detail;  ///< more about it, for people; can be empty
 };
 
 /// Decodes messages in the order in which they were received. Thread-safe: no.

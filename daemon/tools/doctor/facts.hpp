@@ -27,7 +27,7 @@ struct DeviceFacts {
   bool is_used = false;                ///< the running daemon has readings from this sensor; it was not touched then
   bool is_there = false;
   std::string trouble{};  ///< why it cannot be used; of the network: why it cannot be reached
-  std::string remedy{};   ///< what to do about that, from the driver; may be empty
+  std::string remedy{};   ///< what to do about that, from the driver; can be empty
 };
 
 /// The user, and the groups of the sensors' devices.

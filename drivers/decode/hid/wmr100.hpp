@@ -41,7 +41,7 @@ inline constexpr std::size_t kWmr100LongestFrame = 17;
 /// The report that starts the console's sending (without report id).
 inline constexpr std::array<std::uint8_t, 8> kWmr100Start = {0x20, 0x00, 0x08, 0x01, 0x00, 0x00, 0x00, 0x00};
 
-/// The valid bytes of one input report, which may be empty. A count beyond the report is clamped to it. It points into
+/// The valid bytes of one input report, which can be empty. A count beyond the report is clamped to it. It points into
 /// `report`. Thread-safe and realtime-safe: yes.
 ByteSpan wmr100_report_bytes(ByteSpan report) noexcept;
 

@@ -14,7 +14,7 @@ class SampleClock {
   explicit SampleClock(double rate_hz) noexcept : nominal_ns_(1e9 / rate_hz), sample_ns_(nominal_ns_) {}
 
   /// The buffer that ends before sample `end_sample` arrived at `time_ns`. Returns when that was, smoothed. After a gap
-  /// (samples that go back, or a time that is off by more than half a second) it begins anew.
+  /// (samples that go back, or a time that is off by more than half a second) it starts again.
   std::int64_t add(std::uint64_t end_sample, std::int64_t time_ns) noexcept;
 
   /// Duration of a sample as it has turned out, ns.

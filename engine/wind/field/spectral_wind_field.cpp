@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<turbulence::WindComponent, 3> kComponents = {
     turbulence::WindComponent::kAlong, turbulence::WindComponent::kAcross, turbulence::WindComponent::kUpward};
-/// Over those of u (IEC 61400-1:2005, annex B.2).
+/// Relative to u (IEC 61400-1:2005, annex B.2).
 constexpr std::array kDeviations = {1.0, 0.8, 0.5};
 constexpr std::array kLengths = {1.0, 2.7 / 8.1, 0.66 / 8.1};
 
