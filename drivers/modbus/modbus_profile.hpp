@@ -49,7 +49,7 @@ struct ModbusProfile {
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< serial line: silence that ends a message
   Nanoseconds delay_after_open{0};                                ///< from opening to the first request
   Nanoseconds warm_up{0};                                         ///< from opening until readings are valid
-  Nanoseconds quantities_interval = std::chrono::seconds(10);     ///< between two looks at `quantities`
+  Nanoseconds quantities_interval = std::chrono::seconds(10);     ///< between two reads of `quantities`
 
   bool block_read = true;         ///< registers that adjoin may be read by one request
   int block_gap = 0;              ///< up to this many registers between two quantities can be read along with them

@@ -364,7 +364,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   PayloadForm form_;
   HeldValue direction_;
   HeldValue gust_;              // m/s
-  bool is_impossible_ = false;  // the last direction was none
+  bool is_impossible_ = false;  // the last direction was missing
   StationChoice stations_;
   std::string note_;  // why messages cannot be read, for the status; empty: they can
   sensor::ReadingLimit limit_;

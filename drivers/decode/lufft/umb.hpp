@@ -44,7 +44,7 @@ inline constexpr std::uint16_t kUmbController = 0xF001;
 constexpr bool is_umb_controller(std::uint16_t address) noexcept {
   return (address >> 12U) == 15;
 }
-/// That a request may ask for; a frame has room for their values.
+/// Maximum number in a request; a frame has room for their values.
 inline constexpr std::size_t kMaxUmbChannels = 20;
 /// With the maximum of 210 bytes for a command.
 inline constexpr std::size_t kMaxUmbFrame = 224;
