@@ -25,7 +25,7 @@ struct OscMessage {
 /// throws for any bytes. Thread-safe: yes.
 Result<std::vector<OscMessage>, decode::Refusal> decode_osc(std::span<const std::uint8_t> datagram);
 
-/// Is `address` one of those that `pattern` stands for? OSC's own patterns: ? * [a-z] {this,that}.
+/// Returns true if `address` matches `pattern`. OSC's own patterns: ? * [a-z] {this,that}.
 bool osc_address_matches(const std::string& address, const std::string& pattern);
 
 }  // namespace yuragi::drivers::bus
