@@ -9,7 +9,7 @@
 
 namespace {
 
-// sysexits.h, as the other programs have them.
+// Exit codes of sysexits.h, as in the other programs.
 constexpr int kExitUsage = 64;
 constexpr int kExitUnavailable = 69;
 

@@ -41,7 +41,7 @@ int run(int argc, char** argv) {
   }
   std::signal(SIGINT, [](int) { is_stopping = true; });
   std::signal(SIGTERM, [](int) { is_stopping = true; });
-  // Its terminal was closed; under nohup it goes on.
+  // Its terminal was closed; under nohup it continues.
   if (std::signal(SIGHUP, [](int) { is_stopping = true; }) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   if (!options.render.empty()) {
     viewer::film::render_recording(options, is_stopping);

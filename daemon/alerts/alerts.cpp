@@ -68,7 +68,7 @@ Alerts::Alerts(const std::vector<settings::AlertConfig>& alerts, std::string hos
 }
 
 Alerts::~Alerts() {
-  // All at once: each may need a moment to give up what it does.
+  // All at once: each may need a moment to stop its work.
   for (auto& [key, queue] : queues_) queue.request_stop();
 }
 

@@ -22,7 +22,7 @@ namespace yuragi::daemon::alerts {
 class Alerts {
  public:
   /// `host`: the name of this machine in messages. `record_file`: the file of Ledger, from which alerts
-  /// continue; empty: they begin anew.
+  /// continue; empty: they start again.
   Alerts(const std::vector<settings::AlertConfig>& alerts, std::string host, const std::filesystem::path& record_file,
          const Instant& now);
   ~Alerts();

@@ -23,8 +23,8 @@ struct RetryTimes {
   Nanoseconds give_up{0};  ///< no more, counted from the first try; 0: there is only one
 };
 
-/// Delivers the news of one alert by one way, in their order, on a thread of its own: only what comes later of the same
-/// alert waits for a delivery that takes long or is tried again. Its destructor drops what waits. Thread-safe: yes.
+/// Delivers the news of one alert by one way, in their order, on a thread of its own: only later news of the same alert
+/// waits for a slow or repeated delivery. Its destructor drops waiting news. Thread-safe: yes.
 class DeliveryQueue {
  public:
   struct Calls {
@@ -32,7 +32,7 @@ class DeliveryQueue {
     std::function<Result<void, Failure>(const News&, const std::stop_token&)> deliver;
     /// Called on the queue's thread with the alert's name and a sentence. Must not throw.
     std::function<void(std::string_view alert, std::string_view what)> report;
-    /// Called when news is delivered or given up, but not with what the queue's end gives up. Must not throw.
+    /// Called when news is delivered or given up, except when the queue ends. Must not throw.
     std::function<void(const News&)> settle = [](const News&) {};
   };
 

@@ -37,7 +37,8 @@ std::vector<std::string> environment_for(const News& news) {
   return all;
 }
 
-/// Reads once from a pipe, and appends what has room. False: there is nothing to read now, or never again.
+/// Reads once from a pipe, and appends as much as fits. Returns false if there is nothing to read now, or the pipe is
+/// closed.
 bool read_some(int pipe, std::string& output) {
   std::array<char, 4096> block{};
   const ssize_t count = ::read(pipe, block.data(), block.size());
@@ -47,8 +48,8 @@ bool read_some(int pipe, std::string& output) {
   return true;
 }
 
-/// Waits until a process has ended and reads what it prints meanwhile; false: it has not ended after `most`, or a stop
-/// was requested.
+/// Waits until a process has ended and reads its output meanwhile. Returns false if it has not ended after `most`, or a
+/// stop was requested.
 bool has_ended(const platform::ChildProcess& process, int pipe, Nanoseconds most, const std::stop_token& stop,
                std::string& output) {
   const Descriptor wake(::eventfd(0, EFD_CLOEXEC));
@@ -61,7 +62,7 @@ bool has_ended(const platform::ChildProcess& process, int pipe, Nanoseconds most
     const int count = ::poll(waits.data(), waits.size(), static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
     if (count < 0 && errno == EINTR) continue;
     if (count > 0 && waits[0].revents != 0) return true;
-    // A command that always prints has no more time than others.
+    // A command that prints continuously has the same time limit.
     if (count <= 0 || waits[1].revents != 0 || left.count() <= 0) return false;
     if (!read_some(pipe, output)) waits[2].fd = -1;
   }

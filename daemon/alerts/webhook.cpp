@@ -93,7 +93,7 @@ Result<void, Failure> post_to_webhook(const News& news, const std::string& host,
   long status = 0;
   curl_easy_getinfo(request, CURLINFO_RESPONSE_CODE, &status);
   if (status < 200 || status >= 300)
-    return Failure{fmt::format("{} answers with HTTP {}: check the webhook", host_of(news.webhook), status)};
+    return Failure{fmt::format("{} replies with HTTP {}: check the webhook", host_of(news.webhook), status)};
   return {};
 }
 

@@ -48,7 +48,7 @@ class Animation {
 
   /// Begins to exchange the scenes, of which the change was made. Not while another change is carried out.
   void begin_change(std::unique_ptr<SceneChange> change) noexcept;
-  /// The change that is over, with what is to be freed; null if there is none.
+  /// Returns the completed change, with the objects to free; null if there is none.
   std::unique_ptr<SceneChange> take_finished_change() noexcept;
 
   /// The frame of the present poses, size prefix included; valid until the next call.
@@ -69,7 +69,7 @@ class Animation {
 
   /// The skeletons, for clients that join.
   wire::Scenes describe() const { return scenes_->describe(); }
-  /// What the next change is made from.
+  /// The base for the next change.
   const std::shared_ptr<const SceneRoster>& roster() const noexcept { return scenes_->roster(); }
 
   std::span<const pose::Skeleton* const> skeletons() const noexcept { return scenes_->skeletons(); }

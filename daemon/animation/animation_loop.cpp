@@ -44,7 +44,7 @@ Loop::Loop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const 
 Loop::~Loop() {
   stop();
   close(frame_ready_fd_);
-  // What was handed over and not taken.
+  // Orders that were passed on but not taken.
   orders_.drain([](const Order& order) { const std::unique_ptr<SceneChange> owned(order.change); });
   take_finished_change();
 }
@@ -78,8 +78,8 @@ std::optional<std::string> Loop::failure() const {
   return failure_;
 }
 
-/// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): what remains is the frame, if
-/// there is no memory for it, or a pose that is not of its skeleton's kind.
+/// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): the remaining causes are lack of
+/// memory for the frame, or a pose that is not of its skeleton's kind.
 void Loop::run(const std::stop_token& stop) {
   const bool is_over = contain(
       "the animation", [&] { run_ticks(stop); }, [this](const char* what) { failure_ = what; });
@@ -132,7 +132,7 @@ void Loop::tick(const TickSchedule::Tick& tick) {
   wake_io_thread();
 }
 
-/// After the wind was taken: the I/O thread publishes wind for new scenes behind the change.
+/// After the wind was taken: the I/O thread publishes wind for new scenes after the change.
 void Loop::take_orders() {
   orders_.drain([this](const Order& order) {
     if (order.change == nullptr) return animation_.cue(order.cue);

@@ -73,9 +73,9 @@ class Loop {
   bool cue(const SceneCue& cue) { return orders_.push({.cue = cue}); }
 
   /// For the I/O thread: hands over a change of the scenes, which is carried out from the beginning of the next tick
-  /// on. Cues and changes take effect in the order in which they are handed over, and a wind that is published behind
-  /// this meets no scenes of before. False, and `change` stays as it is, if a change is being carried out or the
-  /// ring is full.
+  /// on. Cues and changes take effect in the order in which they are handed over, and a wind that is published after
+  /// this call is not used for the old scenes. Returns false, and leaves `change` unchanged, if a change is being
+  /// carried out or the ring is full.
   bool begin_change(std::unique_ptr<SceneChange>& change);
   /// Returns true if a change was handed over that take_finished_change() has not returned yet.
   bool is_changing() const noexcept { return is_changing_; }

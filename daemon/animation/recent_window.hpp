@@ -7,9 +7,9 @@
 
 namespace yuragi::daemon::animation {
 
-/// What a growing total was at the beginning of the last 10 minutes: the difference from now is what came since. The
-/// window's length is between 9 and 10 minutes, and all the time until then at first. `Total` is copied once a minute.
-/// Time is a parameter. Thread-safe: no. Realtime-safe: yes.
+/// The value of a growing total at the beginning of the last 10 minutes; the difference from now is the increase since.
+/// The window's length is between 9 and 10 minutes, or the whole time if that is shorter. `Total` is copied once a
+/// minute. Time is a parameter. Thread-safe: no. Realtime-safe: yes.
 template <class Total>
 class RecentWindow {
  public:

@@ -26,8 +26,8 @@ bool is_same_model(const settings::SceneConfig& a, const settings::SceneConfig& 
   });
 }
 
-/// The scene of `present` that is what `next` wants at `index`. The seed, which the index is part of, decides which
-/// one.
+/// Returns the scene of `present` that equals the one wanted by `next` at `index`. The seed, of which the index is a
+/// part, decides which one.
 std::optional<std::size_t> find_same(const SceneRoster& present, const settings::Config& next, std::size_t index) {
   const std::uint64_t from_first = next.seed + index - present.seed;  // wraps round, as seeds do
   if (from_first >= present.configs.size()) return std::nullopt;
@@ -51,7 +51,7 @@ bool is_same_list(const SceneRoster& a, const SceneRoster& b) {
 }  // namespace
 
 void SceneChange::begin_fades() noexcept {
-  // First what is shown now, all of it, then the fades, which change that.
+  // First copies what is shown now, then begins the fades, which change it.
   for (Start& start : starts) {
     if (start.shown_like != nullptr) start.shown = start.shown_like->fade.is_shown();
   }
@@ -75,7 +75,7 @@ std::unique_ptr<SceneChange> make_scene_change(const SceneRoster& present, const
   roster->gusts = present.gusts;
   roster->configs = next.scenes;
 
-  // What stays, and what is made.
+  // The scenes that stay, and those that are made.
   std::vector<bool> stays(present.scenes.size());
   for (std::size_t i = 0; i < next.scenes.size(); ++i) {
     if (const auto same = find_same(present, next, i)) {
@@ -105,7 +105,7 @@ std::unique_ptr<SceneChange> make_scene_change(const SceneRoster& present, const
   }
   change->leaving_count = leaving.size();
 
-  // The lists, and what clients need to know of them.
+  // The lists, and the messages for clients.
   std::uint64_t generation = present.generation;
   const auto announce = [&](wire::Bytes message) {
     change->messages.push_back({generation, std::make_shared<const wire::Bytes>(std::move(message))});

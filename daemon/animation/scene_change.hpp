@@ -9,16 +9,16 @@ namespace yuragi::daemon::animation {
 /// How long scenes that give way to others fade out, and those others in.
 inline constexpr double kSceneChangeFade_s = 2.0;
 
-/// From the scenes that there are to those of another configuration, made beforehand with all memory that the
+/// The change from the present scenes to those of another configuration, made beforehand with all memory that the
 /// animation's thread needs for it, and owned by that thread while it is carried out (Animation::begin_change()).
 ///
-/// A scene whose kind, parameters, place and seed are the same stays as it is. One that is new, or made anew, begins
-/// hidden in its rest pose and fades in; one that is gone, or was made anew, fades out. Meanwhile there are both; then
-/// a second change of the list takes away what has left. If both together are larger than the stream allows, what
-/// leaves fades out first, and the list changes once. What is shown stays shown, by the scene's name, unless the
+/// A scene whose kind, parameters, place and seed are the same is kept. One that is new, or made again, begins hidden
+/// in its rest pose and fades in; one that is removed, or was made again, fades out. Meanwhile there are both; then a
+/// second change of the list takes away what has left. If both together are larger than the stream allows, what leaves
+/// fades out first, and the list changes once. What is shown stays shown, by the scene's name, unless the
 /// configuration's `shown` of it changes.
 struct SceneChange {
-  /// What one scene of `roster` begins with.
+  /// The initial state of one scene of `roster`.
   struct Start {
     StagedScene* scene = nullptr;
     double wind_gain = 1.0;
@@ -38,8 +38,8 @@ struct SceneChange {
   double reach_m = 0.0;        ///< of `roster`, as Animation::reach_m()
   std::size_t node_count = 0;  ///< of `roster`
 
-  // For the animation. What it gives up for them comes to stand here in exchange, to be freed elsewhere.
-  std::unique_ptr<SceneList> both;  ///< with those that leave; null: there is no such list
+  // For the animation. The lists that it replaces are put here, to be freed elsewhere.
+  std::unique_ptr<SceneList> both;  ///< with those that leave; null: not needed
   std::unique_ptr<SceneList> last;
   std::vector<Start> starts;
   std::vector<std::shared_ptr<StagedScene>> leaving;

@@ -20,8 +20,8 @@ class SceneDirector {
 
   SceneDirector(const settings::Config& config, SendCue send_cue);
 
-  /// From now on the scenes are those of `roster`; cues count them as it does. What is shown stays shown, by its name,
-  /// unless the configuration's `shown` of it has changed (SceneChange).
+  /// From now on the scenes are those of `roster`, and cues refer to it. What is shown stays shown, by its name, unless
+  /// the configuration's `shown` of it has changed (SceneChange).
   void follow(const SceneRoster& roster);
 
   /// Changes who may switch scenes.

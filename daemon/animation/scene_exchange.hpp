@@ -41,7 +41,7 @@ class SceneExchange {
   Loop& loop_;
   SceneDirector& director_;
   std::shared_ptr<const SceneRoster> present_;
-  std::vector<SceneChange::Message> messages_;  // of lists that no frame has come of yet
+  std::vector<SceneChange::Message> messages_;  // of lists of which no frame was taken yet
 };
 
 }  // namespace yuragi::daemon::animation

@@ -85,7 +85,7 @@ class OwnDaemon {
   OwnDaemon(const OwnDaemon&) = delete;
   OwnDaemon& operator=(const OwnDaemon&) = delete;
 
-  /// Lets the measurement take what comes for `time_s`, or until `is_enough`.
+  /// Passes incoming readings to the measurement for `time_s`, or until `is_enough`.
   template <class IsEnough>
   void measure(tools::acceptance::SensorMeasurement& measurement, double time_s, IsEnough is_enough) {
     const MonoTime end = clock_.now().mono + from_seconds(time_s);
@@ -123,7 +123,7 @@ std::optional<tools::acceptance::NorthCheck> check_north(OwnDaemon& daemon,
     std::getline(std::cin, line);
     return line;
   });
-  // What comes meanwhile is read: a client that does not read is let go.
+  // Messages are read meanwhile: a client that does not read is disconnected.
   tools::acceptance::SensorMeasurement meanwhile(sensor);
   daemon.measure(meanwhile, kPersonsTime_s,
                  [&] { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
@@ -253,40 +253,27 @@ void add_accept(CLI::App& app) {
       "accept",
       "hand an installation over: each sensor from its device, simulated and real, to the poses, and a page to sign");
   command->footer(
-      "Runs the configuration with each sensor alone, one after another, and measures at the end of the stream: "
-      "whether\n"
-      "readings come and are used, how often, their range, whether poses move, and the time from a reading to the "
-      "first\n"
-      "pose that it moves. Mean speeds are compared with those of the other sensors. Nothing is recorded, opening "
-      "hours\n"
-      "and the fall-back recording are left out. Stop the daemon first: it uses the devices.\n"
+      "Runs the configuration with each sensor alone, one after another, and measures at the end of the stream: do\n"
+      "readings arrive, and are they used; how often; their range; do poses move; the time from a reading to the\n"
+      "first pose that it moves. Mean speeds are compared with those of the other sensors. Nothing is recorded;\n"
+      "opening hours and the fall-back recording are off. Stop the daemon first, because it uses the devices.\n"
       "Each sensor takes the time of --for, and up to as long again until its first reading.\n"
-      "First each sensor on a line or in the network is simulated: yuragi-sim plays its device in a constant wind (8 "
-      "m/s\n"
-      "from 225 degrees) on this machine, for --for and at most 10 s, and the sensor's entry is used except for the "
-      "way "
-      "to\n"
-      "its device, which station it is, and, with nmea, talker, address and xdr_id. Then the speed and direction "
-      "after\n"
-      "the calibration must be those of that wind: configuration and software are proved, cables and device are not.\n"
-      "A Modbus device has its factory slave ids, or those of the entry. For what is not simulated the reason is "
-      "shown; it is\n"
-      "neither passed nor failed; the same where yuragi-sim is not installed.\n"
-      "It asks nothing, unless --ask is given: then it also has each vane held to the north (15 degrees are allowed).\n"
-      "Failed: no reading, readings that are not used at the end, no frames or poses that do not move. Remarks: "
-      "readings\n"
-      "that are synthetic, replayed or do not change, 5 % of messages refused, 200 ms from reading to pose, a mean "
-      "speed\n"
-      "that is half or twice that of the others.\n"
+      "First each sensor on a line or in the network is simulated for --for, at most 10 s: yuragi-sim plays its\n"
+      "device in a constant wind (8 m/s from 225 degrees), read with its entry except for address, station and,\n"
+      "with nmea, talker and xdr_id. The calibrated speed and direction must be those of that wind: this proves\n"
+      "configuration and software, not cables and device. A sensor that cannot be simulated, or for which yuragi-sim\n"
+      "is missing, is listed with the reason, neither passed nor failed.\n"
+      "With --ask the technician also holds each vane to the north (15 degrees are allowed).\n"
+      "Failed: no reading, readings that are not used at the end, no frames, or poses that do not move. Remarks:\n"
+      "readings that are synthetic, replayed or constant, 5 % of messages refused, 200 ms from reading to pose, a\n"
+      "mean speed that is half or twice that of the others.\n"
       "Exit code 0: passed, with remarks at most; 1: failed; 69: a daemon runs; 73: the page cannot be written.\n"
-      "--json: verdict (\"passed\", \"remark\" or \"failed\"), is_rehearsal (simulated devices only), site, "
-      "configuration, software, system, begun, "
-      "simulated\n"
-      "and sensors (both with name, driver, verdict, remarks, state, readings, measured_s, first_reading_s, "
-      "interval_s,\n"
-      "least_speed_m_s, mean_speed_m_s, largest_speed_m_s, direction_deg, delays, median_delay_s, longest_delay_s,\n"
-      "frames, moved_frames, largest_live_weight; what is not simulated has name, driver and remarks, and null for\n"
-      "verdict) and north_checks (sensor, direction_deg, verdict). What is not known is null.\n"
+      "--json: verdict (\"passed\", \"remark\" or \"failed\"), is_rehearsal (simulated devices only), site,\n"
+      "configuration, software, system, begun, simulated and sensors (both with name, driver, verdict, remarks, state, "
+      "readings,\n"
+      "measured_s, first_reading_s, interval_s, least_speed_m_s, mean_speed_m_s, largest_speed_m_s, direction_deg,\n"
+      "delays, median_delay_s, longest_delay_s, frames, moved_frames, largest_live_weight; if not simulated: name,\n"
+      "driver, remarks, and verdict null) and north_checks (sensor, direction_deg, verdict). Unknown values are null.\n"
       "  sudo systemctl stop yuragi && sudo -u yuragi yuragi accept --site \"Museum, hall 2\" --out /tmp/hall-2.html");
   auto options = std::make_shared<AcceptOptions>();
   add_installation_config(*command, options->config_file);

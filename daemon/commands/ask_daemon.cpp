@@ -12,7 +12,7 @@ namespace {
 constexpr auto kAskConnectTimeout = std::chrono::seconds(2);
 constexpr auto kAskTimeout = std::chrono::seconds(5);
 
-/// Takes the daemon's messages until all that was asked for has come.
+/// Takes the daemon's messages until all requested ones were received.
 class StatusCollector {
  public:
   explicit StatusCollector(const std::string& address) { status_.address = address; }

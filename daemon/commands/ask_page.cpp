@@ -70,7 +70,7 @@ nlohmann::json ask_page(const PageRequest& request) {
 
   if (const CURLcode code = curl_easy_perform(curl); code != CURLE_OK) {
     throw FailureError(
-        {fmt::format("no daemon answers at http://{} ({}): is `yuragi run` running?", place, curl_easy_strerror(code)),
+        {fmt::format("no daemon replies at http://{} ({}): is `yuragi run` running?", place, curl_easy_strerror(code)),
          FailureKind::kUnavailable});
   }
   long status = 0;
@@ -78,7 +78,7 @@ nlohmann::json ask_page(const PageRequest& request) {
   nlohmann::json json = nlohmann::json::parse(answer, nullptr, false);
   if (!json.is_object()) {
     throw FailureError(
-        {fmt::format("http://{} answers with something other than JSON (HTTP {}): it is not the daemon", place, status),
+        {fmt::format("http://{} replies with something other than JSON (HTTP {}): it is not the daemon", place, status),
          FailureKind::kUnavailable});
   }
   if (status >= 200 && status < 300) return json;

@@ -11,26 +11,23 @@ extern const Command kCalibrateCommand;
 namespace {
 
 constexpr const char* kCalibrateFooter =
-    "The steps for a new sensor, in this order: zero (still air), span (a known wind, or a reference sensor), north "
-    "(the\n"
-    "direction of its vane). A microphone needs the step microphone only. Measurements, changes and their effect are\n"
-    "shown before anything is written. Comments and layout of the file are kept, and the previous file is kept as\n"
-    "FILE.bak. A running daemon that was started with this file is asked to read it again (`yuragi reload`).\n"
-    "A result that cannot be right is refused, with the reason.\n"
+    "The steps for a new sensor, in this order: zero (still air), span (a known wind, or a reference sensor), north\n"
+    "(the direction of its vane). A microphone needs only the step microphone. Measurements, changes and their\n"
+    "effect are shown before anything is written. The file keeps its comments and layout, and the previous one is\n"
+    "kept as FILE.bak. A running daemon that was started with this file reads it again (`yuragi reload`).\n"
+    "An implausible result is refused, with the reason.\n"
     "\n"
-    "Live readings come from the running daemon if there is one, otherwise from the device. --recording reads them "
-    "from\n"
-    "a recording instead. Recordings hold uncalibrated readings, so that a calibration can be repeated at any time.\n"
+    "Live readings come from the running daemon if there is one, otherwise from the device; with --recording from\n"
+    "a recording. Recordings hold uncalibrated readings, so a calibration can be repeated at any time.\n"
     "\n"
     "  yuragi calibrate zero --config wall.toml --sensor roof\n"
     "  yuragi calibrate north --config wall.toml --sensor roof --bearing 214\n"
     "  yuragi calibrate span --config wall.toml --sensor roof --reference handheld --for 1200\n"
     "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --recording may.windlog\n"
     "\n"
-    "Exit code 0: done (or declined); 64: wrong command line; 65: the measurement is refused; 66: no such recording;\n"
-    "69: a sensor is silent, or the daemon has to be stopped first; 73: the file cannot be written; 78: the file has "
-    "an\n"
-    "error.";
+    "Exit code 0: done (or declined); 64: wrong command line; 65: the measurement is refused; 66: the recording\n"
+    "does not exist; 69: a sensor is silent, or the daemon must be stopped first; 73: the file cannot be written;\n"
+    "78: the file has an error.";
 
 void add_calibrate(CLI::App& app) {
   CLI::App* calibrate = app.add_subcommand("calibrate", "Calibrate a sensor, and write the configuration");

@@ -150,7 +150,7 @@ struct CheckOptions {
   bool as_json = false;
 };
 
-/// What the unit would meet with this configuration at the next boot.
+/// The problems of the unit with this configuration at the next boot.
 void rehearse(const settings::Config& config, const CheckOptions& options) {
   namespace doctor = tools::doctor;
   const auto unit =

@@ -92,8 +92,8 @@ CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string&
   return option;
 }
 
-/// The driver's own parameters, checked and understood by the driver, as of a sensor that reads a file: what is not
-/// given is what the driver does by itself.
+/// The driver's own parameters, checked and read by the driver, as for a sensor that reads a file: missing ones have
+/// the driver's defaults.
 void DecodeCommandOptions::set_text() {
   ParameterValues::Map given = given_for_text_;
   given["transport"] = std::string("file");

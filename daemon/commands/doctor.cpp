@@ -43,7 +43,7 @@ void add_doctor(CLI::App& app) {
   command->footer(
       "Looks at the configuration, the devices that it names (serial ports, USB devices, sound cards, hosts, brokers,\n"
       "files), permissions, clock, disk, listening address, graphics and display, versions and limits. It changes\n"
-      "nothing, and leaves alone what a running daemon has readings from. A host that does not answer takes 2 s.\n"
+      "nothing, and leaves alone what a running daemon has readings from. A host that does not reply takes 2 s.\n"
       "Ask as the user that the daemon runs as: sudo -u yuragi yuragi doctor\n"
       "If yuragi.service is installed, it also tries the next boot, as `yuragi check-config --as-service` does.\n"
       "Exit code 0: no error, warnings at most; 1: errors; 64: the command line.\n"

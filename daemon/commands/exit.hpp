@@ -10,7 +10,7 @@ namespace yuragi::daemon::commands {
 // How commands end: 0, or one of sysexits.h, so that a service manager can see what went wrong; or, if a command
 // judges something, one of the first two.
 inline constexpr int kExitAttention = 1;      ///< `status`, `doctor`, `accept`, `verify`: something needs attention
-inline constexpr int kExitNoDaemon = 2;       ///< `status`: no daemon answers
+inline constexpr int kExitNoDaemon = 2;       ///< `status`: no daemon replies
 inline constexpr int kExitUsage = 64;         ///< the command line
 inline constexpr int kExitDataError = 65;     ///< an input file with invalid content
 inline constexpr int kExitNoInput = 66;       ///< a missing input file

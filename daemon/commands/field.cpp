@@ -35,26 +35,22 @@ extern const Command kFieldCommand;
 namespace {
 
 constexpr const char* kFieldFooter =
-    "Writes the wind at every point of a grid, at one time or many, as float32 in m/s with the axes\n"
+    "Writes the wind at every point of a grid, at one time or many, as float32 in m/s, with the axes\n"
     "\n"
-    "  [frame, component, z, y, x]   component: u toward east, v toward north, w up (w in 3-D only)\n"
-    "                                x toward east, y up, z toward south; in 2-D y is one sample\n"
+    "  [frame, component, z, y, x]   component: u toward east, v toward north, w up (w with --dims 3 only)\n"
+    "                                x toward east, y up, z toward south; with --dims 2, y is one sample\n"
     "\n"
-    "and FILE.json, which describes the places and times of the samples, and the wind.\n"
+    "FILE.json describes the places and times of the samples, and the wind.\n"
     "\n"
-    "The wind has given statistics: mean speed and direction, turbulence intensity TI (standard deviation along\n"
-    "the wind over the mean speed) and length L (how far gusts reach). A point sees von Karman's spectrum; across the\n"
-    "wind the standard deviation is 0.8 of that along it and the length a third, upward 0.5 and a twelfth (IEC\n"
-    "61400-1). The mean wind carries the gusts along; meanwhile their eddies turn over, unless --frozen.\n"
+    "Every point has von Karman's spectrum with the given mean speed, direction, turbulence intensity (standard\n"
+    "deviation along the wind over the mean speed) and length L. Across the wind the standard deviation is 0.8 of\n"
+    "that and the length a third, upward 0.5 and a twelfth (IEC 61400-1). The mean wind carries the gusts, which\n"
+    "change on the way, unless --frozen is given. With --dims 3, --stress is the covariance of u along the wind and\n"
+    "w over both standard deviations; it does not change variances and spectra.\n"
     "\n"
-    "In 3-D gusts come down and lulls rise, by --stress: the covariance of u along the wind and w, over\n"
-    "both standard deviations. Variances and spectra are the same for every stress.\n"
-    "\n"
-    "It is made on a tile that repeats: --tile samples an edge, by default at least twice the grid's edge, as far as\n"
-    "that is allowed. Give it 8 L or more if you want to measure statistics. Gusts of less than two samples are\n"
-    "missing; FILE.json has the variance that remains.\n"
-    "\n"
-    "With --windlog it is the live wind over the ground that the daemon would have had while that was recorded.\n"
+    "The wind is made on a tile that repeats: --tile samples per edge. For statistics make it 8 L or longer. Gusts\n"
+    "of less than two samples are missing; FILE.json has the remaining variance.\n"
+    "With --windlog the result is the wind over the ground that the daemon would have had during that recording.\n"
     "\n"
     "  yuragi field --speed 8 --size 256 --spacing 0.5 --frames 100 --rate 20 -o gusts.npy --plot gusts.png\n"
     "  yuragi field --dims 3 --size 64,32,64 --turbulence 0.15 -o box.npy\n"
@@ -254,7 +250,7 @@ void run_field(FieldOptions options) {
     throw ExitError(kExitUsage, fmt::format("--size, --frames: too large: {:.0f} GB (maximum 100 GB)", bytes / 1e9));
   }
   if (options.recording && !drivers::windlog::recording_exists(*options.recording)) {
-    throw ExitError(kExitNoInput, options.recording->string() + ": there is no such recording");
+    throw ExitError(kExitNoInput, options.recording->string() + ": the recording does not exist");
   }
   const std::filesystem::path beside = std::filesystem::path(options.output).replace_extension(".json");
   if (beside == options.output) {

@@ -13,7 +13,7 @@ void add_json(CLI::App& command, bool& as_json);
 /// Over several lines, indented.
 void print_json(const nlohmann::ordered_json& json);
 
-/// On one line, for commands that go on.
+/// On one line, for commands that continue.
 void print_json_line(const nlohmann::ordered_json& json);
 
 }  // namespace yuragi::daemon::commands

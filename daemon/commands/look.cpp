@@ -12,7 +12,7 @@ void add_look_command(CLI::App& app) {
       "  yuragi look values                       all values, and those of the configuration where they differ\n"
       "  yuragi look set haze=0.4 time=06:30      the viewers cross-fade to it\n"
       "  yuragi look reset                        all as in the configuration\n"
-      "Exit code 0: done; 64: a mistake in a key or a value; 69: no daemon answers; 77: the daemon does not allow it\n"
+      "Exit code 0: done; 64: a mistake in a key or a value; 69: no daemon replies; 77: the daemon does not allow it\n"
       "from here (see `yuragi describe`, [stream] control).");
   add_parameter_commands(*look, false);
 }

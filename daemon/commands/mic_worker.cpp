@@ -29,7 +29,7 @@ void end_worker(int /*signal*/) {
   is_worker_over = true;
 }
 
-/// Keeps what libraries print out of the frames: redirects standard output to standard error, and that to /dev/null
+/// Keeps the output of libraries out of the frames: redirects standard output to standard error, and that to /dev/null
 /// unless it is wanted (ALSA prints much about each device that it tries). Returns the original standard output.
 int take_output(bool verbose) {
   const int output = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
@@ -65,10 +65,10 @@ void work(const WorkerOptions& options) {
     list_devices(*input, output);
   } else {
     static const sensing::SystemClock clock;  // outlives the sound system's thread
-    const bool was_told =
+    const bool was_stopped =
         drivers::microphone::run_microphone_worker(options.worker, *input, clock, output, is_worker_over);
     // Closing a device that is gone can hang the library: exit without closing it.
-    if (!was_told) _exit(kExitUnavailable);
+    if (!was_stopped) _exit(kExitUnavailable);
   }
 }
 

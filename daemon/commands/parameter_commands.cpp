@@ -16,7 +16,7 @@
 namespace yuragi::daemon::commands {
 namespace {
 
-/// Other scenes take as long as making them, behind those that still fade.
+/// New scenes must be made first, and wait for those that still fade.
 constexpr auto kParameterTimeout = std::chrono::seconds(60);
 
 struct ParameterOptions {
@@ -46,7 +46,7 @@ wire::ControlReply carry_out(const ParameterOptions& options, wire::ParameterCom
   return reply;
 }
 
-/// What the daemon lists, of what the options mean.
+/// The parts of the daemon's list to which the options refer.
 std::vector<wire::ParameterGroup> groups_for(const ParameterOptions& options) {
   auto groups = carry_out(options, {.describe = true}).parameters->groups;
   std::string known;
@@ -95,7 +95,7 @@ void reset_values(const ParameterOptions& options) {
   change(options, std::move(edits));
 }
 
-/// As it stands in the configuration.
+/// As written in the configuration.
 std::string toml_text(const wire::ParameterState& state, const std::string& value) {
   return state.kind == wire::ParameterKind::kText ? settings::toml_value(value) : value;
 }

@@ -102,10 +102,9 @@ void add_player(CLI::App& app) {
       "  yuragi player seek 2018-07-20T14:05:00Z  to a time (UTC if it has no zone)\n"
       "  yuragi player rate 4\n"
       "A seek fades from the old place to the new one ([[sensor]] seam), so that nothing jumps.\n"
-      "--json: a list with sensor, file, is_open, position_s, length_s, recorded_utc_ns, rate, is_paused, "
-      "is_finished,\n"
-      "loops, rounds, refusal for each recording; null while it cannot be read.\n"
-      "Exit code 0: done; 64: there is no such sensor or place; 69: no daemon answers; 77: the daemon does not\n"
+      "--json: a list with sensor, file, is_open, position_s, length_s, recorded_utc_ns, rate, is_paused,\n"
+      "is_finished, loops, rounds, refusal for each recording; null while it cannot be read.\n"
+      "Exit code 0: done; 64: the sensor or place does not exist; 69: no daemon replies; 77: the daemon does not\n"
       "allow it from here (see `yuragi describe`, [stream] control).");
 
   const auto add = [player](const char* name, const char* help, wire::PlayerAction action) {

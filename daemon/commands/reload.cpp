@@ -21,19 +21,16 @@ namespace {
 
 constexpr const char* kReloadFooter =
     "The daemon reads the file that it was started with, and applies what can change while it runs: scenes,\n"
-    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [look], [[camera]], [log], who may connect\n"
-    "and control, how much is recorded, and the rate of recordings that play. What else has changed is named: it "
-    "takes\n"
-    "a restart. A mistake changes nothing. SIGHUP does the same; then the log shows what was done.\n"
+    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [look], [[camera]], [log], permissions and\n"
+    "limits of clients, limits of the recording, and the rate of recordings that play. Other changes are listed:\n"
+    "they need a restart. A mistake changes nothing. SIGHUP does the same, and logs the result.\n"
     "  yuragi reload                            the daemon at 127.0.0.1:7410\n"
     "  yuragi reload --config wall.toml         the one that was started with this file, at its address\n"
-    "Exit code 0: done; 64: the daemon has no such file; 69: no daemon answers; 70: it failed, and the reason is\n"
-    "printed; 77: the daemon does not allow it from here (see `yuragi describe`, [stream] control); 78: the file has "
-    "a\n"
-    "mistake.\n"
-    "--json: outcome (\"done\", \"mistake\", \"not allowed\", \"no file\" or \"failed\"), and lists of texts: "
-    "applied,\n"
-    "takes_restart, mistakes; of an outcome \"done\" these are warnings of what the next start would meet.";
+    "Exit code 0: done; 64: the daemon has another file or none; 69: no daemon replies; 70: it failed, and the\n"
+    "reason is printed; 77: the daemon does not allow it from here (see `yuragi describe`, [stream] control); 78:\n"
+    "the file has a mistake.\n"
+    "--json: outcome (\"done\", \"mistake\", \"not allowed\", \"no file\" or \"failed\"), and lists of texts:\n"
+    "applied, takes_restart, mistakes; with the outcome \"done\" these are warnings about the next start.";
 
 struct ReloadOptions {
   std::optional<std::string> connect;

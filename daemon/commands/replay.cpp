@@ -74,7 +74,7 @@ settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) 
   return settings::default_sensor(options.file.stem().string(), windlog, *values);
 }
 
-/// The whole installation as the recording holds it. Logs what is not as it was.
+/// The whole installation, from the recording. Logs the differences from the recorded one.
 sensing::RecordedInstallation installation_of(const ReplayOptions& options, double rate) {
   if (options.run.config_file) {
     throw ExitError(kExitUsage, "--as-recorded uses the recording's own configuration: remove --config");
@@ -191,7 +191,7 @@ void replay(const ReplayOptions& options) {
     return;
   }
   drivers::windlog::Playback::open(options.file, options.playback)
-      .value();  // fails now; the daemon would wait for the file
+      .value();  // fails immediately, while a daemon would wait for the file
   if (options.rate == "max") return replay_at_full_speed(options);
 
   settings::Config config = options.run.config();
@@ -207,24 +207,19 @@ void replay(const ReplayOptions& options) {
 void add_replay(CLI::App& app) {
   CLI::App* command = app.add_subcommand("replay", "run the daemon with a recording in place of the sensors");
   command->footer(
-      "Ends with the recording, unless it loops. At --rate max no client is served: the recording runs through wind "
-      "and\n"
-      "scenes tick by tick, and a summary with a hash over all poses is printed; the same seed and recording give the\n"
-      "same hash.\n"
+      "Ends with the recording, unless it loops. With --rate max no client is served: the recording runs through wind\n"
+      "and scenes tick by tick, and a summary with a hash over all poses is printed; the same seed and recording give\n"
+      "the same hash.\n"
       "  yuragi replay storm.windlog --rate 4 --start 90\n"
       "  yuragi replay storm.windlog --rate max\n"
       "  yuragi replay year.windlog --same-time-of-day --loop\n"
       "\n"
-      "With --as-recorded a day is replayed as it was: with the scenes, the shaping and its opening hours (by the "
-      "recorded\n"
-      "clock), and each sensor by its name with its calibration, judging and part in the blend, of the configuration "
-      "in "
+      "--as-recorded replays a day with the configuration in the recording: its scenes, shaping, opening hours (by "
       "the\n"
-      "recording. That of the session in which it begins holds to the end; the log shows where the recording has "
-      "another.\n"
-      "Not in a recording, and so not as they were: what had been learnt of the site before it began (site_file), the "
-      "fall-\n"
-      "back recording, messages that a driver refused, and passwords, which a replay does not need.\n"
+      "recorded clock), and each sensor by its name with its calibration, judging and part in the blend. The\n"
+      "configuration at the start is used to the end; the log shows where the recording has another.\n"
+      "A recording does not contain what was learnt of the site before (site_file), the fall-back recording, refused\n"
+      "messages, and passwords.\n"
       "  yuragi replay wall.windlog --as-recorded --start 2026-05-01T06:00:00Z\n"
       "While it runs, in another terminal: yuragi player pause, step, seek, rate, status.");
   auto options = std::make_shared<ReplayOptions>();

@@ -50,9 +50,8 @@ void add_scene(CLI::App& app) {
       "  yuragi scene list                        all scenes, and which are shown\n"
       "  yuragi scene switch elm --fade 5         show this one and hide all others: a cross-fade\n"
       "  yuragi scene set elm gain=1.4            change a value of it\n"
-      "Exit code 0: done; 64: there is no such scene, or a mistake in a value; 69: no daemon answers; 77: the daemon "
-      "does not allow it\n"
-      "from here (see `yuragi describe`, [stream] control).");
+      "Exit code 0: done; 64: the scene does not exist, or a mistake in a value; 69: no daemon replies; 77: the\n"
+      "daemon does not allow it from here (see `yuragi describe`, [stream] control).");
 
   const auto add = [scene](const char* name, const char* help, bool shown, bool hide_others) {
     CLI::App* command = scene->add_subcommand(name, help);

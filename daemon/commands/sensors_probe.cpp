@@ -267,7 +267,7 @@ void probe(const ProbeOptions& options) {
   if (!hits) throw ExitError(kExitUnavailable, hits.error().message);
   if (*hits > 0) return;
   throw ExitError(kExitUnavailable,
-                  fmt::format("no device answers at {}: check power, wiring (swap A and B) and termination, or try "
+                  fmt::format("no device replies at {}: check power, wiring (swap A and B) and termination, or try "
                               "more: --id 1-247, --timeout 1, --parity even, --baud 1200",
                               options.where));
 }
@@ -277,9 +277,9 @@ void probe(const ProbeOptions& options) {
 void add_sensors_probe(CLI::App& sensors) {
   CLI::App* probe_command = sensors.add_subcommand("probe", "find the devices on a line");
   probe_command->require_subcommand(1);
-  CLI::App* command = probe_command->add_subcommand("modbus", "which Modbus devices answer, and which profile fits");
+  CLI::App* command = probe_command->add_subcommand("modbus", "which Modbus devices reply, and which profile fits");
   command->footer(
-      "Tries line settings and slave ids, likely ones first, and prints each device that answers as a [[sensor]] "
+      "Tries line settings and slave ids, likely ones first, and prints each device that replies as a [[sensor]] "
       "table\n"
       "with the profile that fits best; everything else is a comment, so that all of it can be pasted into one\n"
       "configuration. It only reads, and only registers that reading does not change. A running daemon "
@@ -307,10 +307,10 @@ void add_sensors_probe(CLI::App& sensors) {
       ->check(CLI::IsMember({"none", "even", "odd"}))
       ->delimiter(',');
   command->add_option("--id", options->ids, "slaves to ask: 3, 1-10, 1,2,17; default: 1-16, and the profiles' own ids");
-  command->add_option("--timeout", options->timeout_s, "how long a device may take to answer, s")
+  command->add_option("--timeout", options->timeout_s, "maximum wait for a reply, s")
       ->check(CLI::Range(0.02, 10.0))
       ->capture_default_str();
-  command->add_flag("--all", options->tries_all, "serial: try further settings even after a device has answered");
+  command->add_flag("--all", options->tries_all, "serial: try further settings even after a device has replied");
   command->add_option("--profile-dir", options->profile_dir, "a directory to look for profiles in first")
       ->type_name("FOLDER");
   add_json(*command, options->as_json);

@@ -41,7 +41,7 @@ struct WatchOptions {
   std::string sensor;  ///< of raw messages; empty: all
 };
 
-/// When watching ends by itself.
+/// The end of watching, if it is limited.
 class Deadline {
  public:
   explicit Deadline(const std::optional<double>& duration_s) : duration_s_(duration_s), begun_(clock_.now().mono) {}
@@ -209,39 +209,28 @@ void watch(const WatchOptions& options) {
 void add_sensors_watch(CLI::App& sensors) {
   CLI::App* command = sensors.add_subcommand("watch", "show a live table of the sensors, or their raw messages");
   command->footer(
-      "Asks the running daemon over its stream, so that no device is opened twice. If no daemon is running, it opens "
-      "the\n"
+      "Asks the running daemon over its stream, so that no device is opened twice; without a daemon it opens the\n"
       "configured sensors itself. If the output is not a terminal, tables are printed one after another.\n"
       "Columns: m/s, gust and from (degrees) as measured; age of the last reading; interval between readings; frames\n"
       "(messages from the device), readings among them, and how often the device was reconnected.\n"
       "States: live, simulated and REPLAY sensors contribute to the wind. Those that are connecting, STALE (silent),\n"
-      "DISCONNECTED, FROZEN (constant readings), SEIZED (no wind measured while wind blows) or IMPLAUSIBLE do not; "
-      "the\n"
-      "reason and what to do are shown below the table.\n"
+      "DISCONNECTED, FROZEN (constant readings), SEIZED (no wind measured while wind blows) or IMPLAUSIBLE do not;\n"
+      "the reason and what to do are shown below the table.\n"
       "The wind is that at the sensors: at the windward edge of the scenes, unless [sensor.blend] gives a place. Its\n"
-      "distance from the middle of the scenes, and the time that a gust takes to it, are shown next to it.\n"
-      "Sensors at several places show how far gusts are alike at the site: after some hours it is shown, as a "
-      "multiple\n"
-      "of what is usual.\n"
-      "If [shaping] changes the wind of the scenes (floor, site gain, gusts, opening hours, ceiling), that is shown, "
-      "too.\n"
+      "distance from the middle of the scenes, the time that a gust takes to it, and the effects of [shaping] are\n"
+      "shown, too. With sensors at several places the reach of gusts follows after some hours, as a multiple of "
+      "usual.\n"
       "Since the daemon's start: clients refused (no place), stuck (they stopped reading) and idle (they requested\n"
       "nothing), and the lateness of its I/O thread and of the animation's ticks: median, 99th percentile, maximum.\n"
-      "Raw messages are shown only if [stream] control allows it. To clients of other machines, files are named\n"
-      "without their folders.\n"
+      "Raw messages need [stream] control. Clients of other machines get the names of files without folders.\n"
       "--json: an object a line: wind (speed_m_s, direction_deg, source, ...), sensors (a list: name, driver, state,\n"
-      "state_reason, value (what its speed is), reads_times_group (1: not levelled), speed_m_s, direction_deg, "
-      "gust_m_s, age_s, interval_s, frames, "
-      "readings, reconnects, refused, "
-      "...),\n"
-      "shaping, recorder (null: nothing is recorded), clients, gust_reach (across, along), late_ticks, recent_ticks, "
-      "recent_skipped_ticks, "
-      "io_lateness and tick_lateness (p50_s, "
-      "p99_s,\n"
-      "max_s), animation (running_s, period_s, tick_s, carried_times, scenes; null: there are none). With --raw: "
-      "sensor, utc_ns, mono_ns, is_received, hex, length_bytes, lost. What is not known is null.\n"
+      "state_reason, value (what its speed is), reads_times_group (1: not levelled), speed_m_s, direction_deg,\n"
+      "gust_m_s, age_s, interval_s, frames, readings, reconnects, refused, ...), shaping, recorder (null: nothing is\n"
+      "recorded), clients, gust_reach (across, along), late_ticks, recent_ticks, recent_skipped_ticks, io_lateness\n"
+      "and tick_lateness (p50_s, p99_s, max_s), animation (running_s, period_s, tick_s, carried_times, scenes; null:\n"
+      "none). With --raw: sensor, utc_ns, mono_ns, is_received, hex, length_bytes, lost. Unknown values are null.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
-      "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
+      "  yuragi sensors watch --raw roof --hex | tee roof.hex       for `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();
   options->run.add_to_client(*command);
   command->add_flag("--once", options->once, "print one table, or one message, and end");

@@ -14,8 +14,8 @@
 
 namespace yuragi::daemon::commands {
 
-/// Prints a line on standard error if what it announces takes longer than a second: it is constructed before the work,
-/// and its end is the work's. A person then knows what is waited for. Prints nothing if no thread can be started.
+/// Prints a line on standard error if the announced work takes longer than a second: it is constructed before the work,
+/// and destroyed after it. A person then knows the reason for the wait. Prints nothing if no thread can be started.
 class SlowNotice {
  public:
   explicit SlowNotice(std::string text) {

@@ -52,21 +52,19 @@ void show_daemon_status(const StatusOptions& options) {
 void add_status(CLI::App& app) {
   CLI::App* command = app.add_subcommand("status", "show how the running daemon does, with an exit code for scripts");
   command->footer(
-      "Exit code 0: all is well; 1: it runs, but something needs attention; 2: no daemon answers (these are the codes\n"
-      "of a Nagios check, too); 64 and 78, as always: the command line, the configuration.\n"
-      "Attention is needed by a sensor whose readings are not used (connecting, stale, frozen, seized, implausible,\n"
-      "disconnected), a recorder that cannot write, whose disk does not answer, that has dropped readings or has less\n"
-      "than 200 MB left, and by lateness: 1 % of the ticks late by more than 17 ms, or of the steps of sensors and\n"
-      "clients by more than 100 ms. The time that it runs is that of its animation; without scenes it is unknown.\n"
-      "A scene's part of a tick, and what this machine carries (until half of each tick is worked for), are means of "
-      "the\n"
-      "last 5 s. On the daemon's machine this works even if the maximum number of clients is connected.\n"
+      "Exit code 0: all is well; 1: it runs, but something needs attention; 2: no daemon replies (also the codes of\n"
+      "a Nagios check); 64: wrong command line; 78: a mistake in the configuration.\n"
+      "These need attention: a sensor whose readings are not used (connecting, stale, frozen, seized, implausible,\n"
+      "disconnected); a recorder that cannot write, whose disk does not respond, that has dropped readings or has\n"
+      "less than 200 MB left; lateness: 1 % of the ticks late by more than 17 ms, or of the steps of sensors and\n"
+      "clients by more than 100 ms. The running time is that of the animation; without scenes it is unknown.\n"
+      "A scene's part of a tick, and what this machine can carry (up to half of each tick), are means of the last\n"
+      "5 s. On the daemon's machine this works even if the maximum number of clients is connected.\n"
       "  yuragi status --connect 192.168.1.30:7410\n"
       "  yuragi status --quiet || mail -s \"the wall\" me@example.org < /dev/null\n"
       "--json: verdict (\"well\", \"attention\" or \"no daemon\"), attention (a list of texts), address, software,\n"
-      "tick_rate_hz, running_s (null if it is not known), scenes (name, kind, is_shown), players (as `yuragi "
-      "player\n"
-      "status --json`), and all that `yuragi sensors watch --json` has.");
+      "tick_rate_hz, running_s (null if unknown), scenes (name, kind, is_shown), players (as `yuragi player status\n"
+      "--json`), and all that `yuragi sensors watch --json` has.");
   auto options = std::make_shared<StatusOptions>();
   add_daemon_address(*command, options->address);
   command->add_option("--config,-c", options->config_file, "the configuration with its address (TOML)")

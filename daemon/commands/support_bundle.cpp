@@ -1,4 +1,4 @@
-// `yuragi support-bundle`: packs what a helper needs to know, without secrets.
+// `yuragi support-bundle`: packs the information that a helper needs, without secrets.
 #include "daemon/tools/support/support_bundle.hpp"
 
 #include <chrono>

@@ -28,28 +28,20 @@ namespace yuragi::daemon::commands {
 namespace {
 
 constexpr const char* kTokenFooter =
-    "[http] token_file in the configuration names the file of the token. A browser on another machine is let in for a\n"
-    "year by the code, which is another one every ten minutes; scripts send the token itself: Authorization: Bearer "
-    "TOKEN.\n"
-    "  yuragi token --config wall.toml            the code of now\n"
-    "  yuragi token --config wall.toml --new      makes the file of the token; an existing one is replaced, "
-    "and\n"
-    "                                             all who knew it are out once the daemon has been started again\n"
-    "  yuragi token --config wall.toml --sessions        lists the browsers that were paired and are still let in\n"
-    "  yuragi token --config wall.toml --revoke ID       ends the session of one of them: its next request is "
-    "refused,\n"
-    "                                                    and the page offers to pair it again\n"
-    "A file that is new can be read by its owner and by the group of the configuration's file. --sessions and --revoke "
-    "ask\n"
-    "the running daemon at [http] listen, and show it the token: run them as a user who may read its file, which for "
-    "the\n"
-    "packaged service is root and the group yuragi.\n"
-    "--json: pairing_code, and for how long it is taken (valid_s); with --sessions: sessions, each with id, since_s,\n"
-    "last_use_s (both since 1970) and address. The last use is accurate to an hour.\n"
-    "Exit code 0: done; 69: there is no token yet, or no daemon answers; 70: the daemon refuses it, for example "
-    "because\n"
-    "there is no such session; 73: the token's file cannot be written; 77: the daemon has another token; 78: the\n"
-    "configuration has a mistake, or names no file.";
+    "[http] token_file in the configuration names the token's file. A browser on another machine is paired for a\n"
+    "year with the code, which changes every ten minutes; scripts send the token: Authorization: Bearer TOKEN.\n"
+    "  yuragi token --config wall.toml               shows the present code\n"
+    "  yuragi token --config wall.toml --new         makes a new token; the old one ends when the daemon restarts\n"
+    "  yuragi token --config wall.toml --sessions    lists the paired browsers\n"
+    "  yuragi token --config wall.toml --revoke ID   ends a session: the next request of its browser is refused\n"
+    "The token's file can be read by its owner and by the group of the configuration's file. --sessions and\n"
+    "--revoke send the token to the daemon at [http] listen: run them as a user who may read the file (with the\n"
+    "packaged service: root and the group yuragi).\n"
+    "--json: pairing_code, valid_s (how long the code is valid); with --sessions: sessions, each with id, since_s,\n"
+    "last_use_s (both since 1970; the last use to an hour) and address.\n"
+    "Exit code 0: done; 69: there is no token yet, or no daemon replies; 70: the daemon refuses it, for example\n"
+    "because the session does not exist; 73: the token's file cannot be written; 77: the daemon has another token;\n"
+    "78: the configuration has a mistake, or names no file.";
 
 struct TokenOptions {
   std::filesystem::path config_file;

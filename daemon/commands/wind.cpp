@@ -38,32 +38,23 @@ extern const Command kWindCommand;
 namespace {
 
 constexpr const char* kWindFooter =
-    "Processes the recording as the daemon processes its sensor, reading by reading, and writes the resulting wind:\n"
-    "time_s (since the start), u_m_s and v_m_s (east and north, toward which it blows), speed_m_s,\n"
-    "direction_deg (where it comes from), trust (0: default wind only, 1: sensor only), state (default, handover, "
-    "live).\n"
+    "Processes the recording as the daemon processes its sensor, and writes the resulting wind: time_s (since the\n"
+    "start), u_m_s and v_m_s (toward east and north), speed_m_s, direction_deg (where the wind comes from), trust\n"
+    "(0: default wind only, 1: sensor only), state (default, handover, live).\n"
     "\n"
-    "Readings that the daemon would reject (spikes, a frozen value, of three or more sensors one that the others "
-    "outvote)\n"
-    "are left out here, too; a --config with [sensor.judge] enabled = false accepts all.\n"
+    "Readings that the daemon would reject (spikes, a frozen value, one that contradicts other sensors) are left\n"
+    "out, unless a --config sets [sensor.judge] enabled = false. The same recording, options and seed give the same\n"
+    "table. It has the real wind; with --shaped the one that moves the scenes, without opening hours.\n"
     "\n"
-    "--value sets what the recorded speeds are: mean (since the previous reading), instant (instantaneous wind) or\n"
-    "maximum (of a period; not used as wind). Default: what the driver that recorded them states; if it states "
-    "nothing,\n"
-    "it is judged from the readings if they are close enough; until then instant for readings at most 30 s apart,\n"
-    "otherwise mean.\n"
+    "--value states what the recorded speeds are: mean (since the previous reading), instant, or maximum (not used\n"
+    "as wind). Default: as stated by the driver that recorded them, otherwise judged from the readings.\n"
+    "--sensor-interval simulates a slower sensor by vector means over that many seconds. --gap omits the readings\n"
+    "between two times; repeatable.\n"
     "\n"
-    "--sensor-interval simulates a slower sensor: vector means over that many seconds, given at their end. --gap "
-    "leaves\n"
-    "out the readings between two times; it can be repeated. The same recording, options and seed\n"
-    "give the same table. The wind is the real one; --shaped writes the one that moves the scenes (opening hours are\n"
-    "left out, and the site gain begins at 1).\n"
-    "\n"
-    "u_m_s and v_m_s are the wind where the sensor stands. Without --sensor-place that is the windward edge of the\n"
-    "scenes: the circle about their middle that just holds a square of --scene-size, wherever the wind comes from.\n"
-    "--place adds the wind at a place on the ground; it can be repeated. The columns u1_m_s, v1_m_s are those of the\n"
-    "first, u2_m_s, v2_m_s of the second, and a comment on top of the table lists the places.\n"
-    "--also adds an anemometer at another place, from a recording that began at the same time.\n"
+    "u_m_s and v_m_s are the wind at the sensor. Without --sensor-place the sensor is at the windward edge of the\n"
+    "scenes: on the circle around a square of --scene-size. Each --place adds columns for a place on the ground:\n"
+    "u1_m_s, v1_m_s, then u2_m_s, v2_m_s; a comment at the top of the table lists the places. --also adds an\n"
+    "anemometer at another place, from a recording that began at the same time.\n"
     "\n"
     "  yuragi wind mast.windlog --rate 60 --sensor-interval 14 --gap 600,700 -o blended.csv\n"
     "  yuragi wind mast.windlog --scene-size 7 --place -3,0 --place 3,0 -o meadow.csv";
@@ -125,7 +116,7 @@ GroundPlace parse_place(const std::string& option, const std::string& text) {
 
 const std::filesystem::path& existing(const std::filesystem::path& file) {
   if (!drivers::windlog::recording_exists(file))
-    throw ExitError(kExitNoInput, file.string() + ": there is no such recording");
+    throw ExitError(kExitNoInput, file.string() + ": the recording does not exist");
   return file;
 }
 
@@ -190,7 +181,7 @@ class Table {
     text_ += ',';
     add_number(value, digits_after_point);
   }
-  /// Most of what a table with many places costs.
+  /// Most of the cost of a table with many places.
   void add_number(double value, int digits_after_point) {
     std::array<char, 400> digits{};  // of any number
     const auto end =

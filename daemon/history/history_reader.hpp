@@ -24,8 +24,7 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// Fails with kUnavailable while another one is being read, and as the reading does. Thread-safe: yes. Waits for
-  /// nothing.
+  /// Fails with kUnavailable while another one is being read, and if the reading fails. Thread-safe: yes. Never waits.
   void ask(unsigned hours, const Reply& reply);
 
  private:

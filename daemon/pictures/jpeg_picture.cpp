@@ -12,8 +12,8 @@
 namespace yuragi::daemon::pictures {
 namespace {
 
-/// A decoder and where it jumps to on an error, which is the only way out of libjpeg. No function that sets the jump
-/// has anything with a destructor.
+/// A decoder and the jump target for an error, which is the only way out of libjpeg. Functions that set the jump must
+/// have no objects with destructors.
 struct JpegReading {
   jpeg_decompress_struct decoder{};
   jpeg_error_mgr errors{};

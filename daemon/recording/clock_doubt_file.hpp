@@ -11,7 +11,7 @@ namespace yuragi::daemon::recording {
 /// is doubted.
 std::filesystem::path clock_doubt_file(const std::filesystem::path& recording);
 
-/// Nullopt if there is no such file, or if it holds no doubt that ClockJudge can have written.
+/// Nullopt if the file does not exist, or contains no doubt that ClockJudge could have written.
 std::optional<ClockDoubt> read_clock_doubt(const std::filesystem::path& file);
 
 /// Replaces the file as a whole, and waits for the disk; removes it without a doubt. Returns false if that fails.

@@ -12,8 +12,8 @@ void create_private_file(std::filesystem::path file) {
   constexpr mode_t kMode = 0640;
   constexpr int kMaxLinks = 40;  // as many as Linux follows
   for (int links = 0; links <= kMaxLinks; ++links) {
-    // O_EXCL: a file that is there is never opened, since closing it would release SQLite's locks on it, which belong
-    // to the whole process (fcntl(2), "Advisory record locking").
+    // O_EXCL: an existing file is never opened, because closing it would release SQLite's locks on it, which belong to
+    // the whole process (fcntl(2), "Advisory record locking").
     const int descriptor = open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kMode);
     if (descriptor >= 0) {
       close(descriptor);

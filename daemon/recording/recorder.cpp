@@ -26,8 +26,8 @@ void Recorder::close() {
   if (worker_->wait_for_end(limits_.most_at_end)) return thread_.join();
   thread_.detach();
   const RecorderStatus status = worker_->status();
-  worker_->report_at_last("the disk does not answer: ended with " + count_text(status.waiting, "reading") +
-                          " that may not have been written");
+  worker_->report_at_last("the disk does not respond: ended with " + count_text(status.waiting, "reading") +
+                          " that were possibly not written");
 }
 
 }  // namespace yuragi::daemon::recording

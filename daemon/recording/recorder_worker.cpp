@@ -23,7 +23,7 @@ namespace {
 
 // Room for the readings between two commits, at tens of thousands a second.
 constexpr std::size_t kRingCapacity = 16'384;
-// What stations report besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
+// The other quantities of stations wait in the ring, and as many again after it: minutes of a sensor.
 constexpr std::size_t kQuantitiesCapacity = 1024;
 /// Parts that began in the same second have the names of the seconds that follow.
 constexpr int kMaxPartNames = 1000;
@@ -39,14 +39,14 @@ std::string megabytes(std::uint64_t bytes) {
   return std::to_string(bytes / 1'000'000) + " MB";
 }
 
-/// The earliest time of what stations reported besides the wind; precondition: there is some.
+/// The earliest time of the other quantities of stations; precondition: there is at least one.
 template <class Entries>
 Instant earliest_of(const Entries& entries) {
   return std::ranges::min_element(entries, {}, [](const auto& entry) { return entry.quantities.time.mono; })
       ->quantities.time;
 }
 
-/// Keeps since when something waits for the disk.
+/// Records since when something waits for the disk.
 class AtTheDisk {
  public:
   using Since = std::optional<std::chrono::steady_clock::time_point>;
@@ -122,8 +122,8 @@ Result<void, Failure> RecorderWorker::hold_lock() {
   return {};
 }
 
-/// Leaves out those of the pending readings that another program, which held the lock until now, has recorded: a span
-/// is in the recording once. What is newer than its last commit was recorded by nobody, and is written.
+/// Omits pending readings that another program, which held the lock until now, has recorded, so that no span is in the
+/// recording twice. Readings newer than its last commit are written.
 Result<void, Failure> RecorderWorker::leave_what_is_recorded() {
   if (auto opened = open_file(); !opened) return opened;
   auto recorded = writer_->last_time();
@@ -139,7 +139,7 @@ Result<void, Failure> RecorderWorker::leave_what_is_recorded() {
   return {};
 }
 
-/// Drops what arrived until then, since another program records it.
+/// Drops readings until that time, because another program records them.
 void RecorderWorker::leave_to_other(UtcTime until) {
   const std::size_t left = std::erase_if(pending_, [until](const Entry& entry) {
     return entry.sensor != kNextSession && entry.reading.time.utc <= until;
@@ -173,7 +173,7 @@ void RecorderWorker::begin_session(Info info, const settings::RecordingConfig& r
   push_marks();
 }
 
-/// If the ring is full, they follow with the next reading that is taken: what is dropped meanwhile is in no session.
+/// If the ring is full, they follow with the next reading that is taken: dropped readings belong to no session.
 void RecorderWorker::push_marks() noexcept {
   while (marks_due_ > 0 && ring_.push({kNextSession, {}})) --marks_due_;
 }
@@ -210,7 +210,7 @@ RecorderStatus RecorderWorker::locked_status() const {
   status.waiting = std::max(pushed_.load(std::memory_order_relaxed), done) - done;
   if (writing_since_ && std::chrono::steady_clock::now() - *writing_since_ >= limits_.hang_after) {
     status.state = RecorderState::kHanging;
-    status.error = file_.string() + ": the disk does not answer";
+    status.error = file_.string() + ": the disk does not respond";
   }
   return status;
 }
@@ -250,7 +250,8 @@ void RecorderWorker::run(const std::stop_token& stop) {
   status_changed_.notify_all();
 }
 
-/// A last attempt, without a pause: for what is pending, then for what is left in the ring. Nothing is pushed any more.
+/// A last attempt, without a pause: for the pending readings, then for the rest of the ring. Nothing is pushed any
+/// more.
 void RecorderWorker::finish() {
   retry_at_ = {};
   flush();
@@ -292,7 +293,7 @@ void RecorderWorker::flush() {
 
   const AtTheDisk at_the_disk(status_mutex_, writing_since_);
   if (const auto done = try_to_write(); !done) {
-    writer_.reset();  // what it committed is complete in its file, wherever that has been moved
+    writer_.reset();  // its commits are complete in its file, wherever that was moved
     return fail(done.error());
   }
   back_off_.reset();
@@ -360,8 +361,8 @@ Result<void, Failure> RecorderWorker::write_quantities() {
   return learn_begin();
 }
 
-/// Appends what stations reported before a time; it stays pending until it is committed. What the file has no place for
-/// is counted; readings are not affected.
+/// Appends what stations reported before a time; it stays pending until it is committed. Quantities that the file
+/// cannot hold are counted; readings are not affected.
 Result<void, Failure> RecorderWorker::append_quantities(MonoTime before) {
   for (auto entry = pending_quantities_.begin(); entry != pending_quantities_.end();) {
     if (entry->quantities.time.mono >= before) {
@@ -409,9 +410,9 @@ Result<void, Failure> RecorderWorker::learn_begin() {
   return {};
 }
 
-/// Makes the file ready for what arrived at `first`: completes one, opens one, begins the session that is due at
-/// `earliest`. What stations reported before that goes into the session that ends: a session has no place for what was
-/// before it.
+/// Prepares the file for entries from `first` on: completes one, opens one, begins the session that is due at
+/// `earliest`. Earlier quantities of stations are written to the old session, because a session cannot hold entries
+/// from before its beginning.
 Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
   if (!clock_) {
     if (auto begun = begin_recording(begin_of_pending(first)); !begun) return begun;
@@ -444,15 +445,15 @@ Instant RecorderWorker::begin_of_pending(Instant first) const {
   return said.mono < first.mono ? said : first;
 }
 
-/// Commits; at first and then once a minute what is committed also comes into the file itself, so that a copy of it
-/// alone is a recording.
+/// Commits; initially and then once a minute also moves the commits into the file itself, so that a copy of it alone is
+/// a recording.
 Result<void, Failure> RecorderWorker::commit() {
   if (auto committed = writer_->commit(); !committed) return committed;
   if (commits_++ % kCommitsPerCheckpoint != 0) return {};
   return writer_->checkpoint();
 }
 
-/// Closes the file and renames it to what a completed part is called.
+/// Closes the file and renames it to the name of a completed part.
 Result<void, Failure> RecorderWorker::complete_file(UtcTime now) {
   if (auto closed = writer_->close(); !closed) return closed;
   writer_.reset();
@@ -501,7 +502,7 @@ void RecorderWorker::save_doubt() {
   saved_doubt_ = doubt;
 }
 
-/// Deletes what is not to be kept. Fails if there is less space all the same than is to be left free.
+/// Deletes files according to the rules. Fails if there is still less free space than required.
 Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
   const settings::RecordingConfig rules = with_room_to_grow(rules_);
   auto free_bytes = measure_free_space();
@@ -524,7 +525,7 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
                  megabytes(rules_.least_free_bytes) + " of [recording] min_free and for its growth; free some space"};
 }
 
-/// Fails if the name has come to belong to another file or to none. SQLite does not report that.
+/// Fails if the name belongs to another file or to none. SQLite does not report that.
 Result<void, Failure> RecorderWorker::check_name() const {
   const auto named = drivers::windlog::identity_of(file_);
   if (named && *named != identity_) return Failure{file_.string() + ": was replaced by another file"};
@@ -577,7 +578,8 @@ Result<void, Failure> RecorderWorker::begin_session_at(Instant started) {
   return {};
 }
 
-/// Sets why nothing can be written (empty: it can), reports a change once, and wakes those who wait for a status.
+/// Sets the reason why nothing can be written (empty: writing works), reports a change once, and wakes those who wait
+/// for a status.
 void RecorderWorker::set_status(const std::string& error) {
   bool changed = false;
   {

@@ -35,7 +35,7 @@ struct RecordedSensor {
   std::string options;  ///< TOML
 };
 
-/// What a recording holds about the run that made it.
+/// Information about the run, for the recording.
 struct Info {
   Instant started;
   std::string software;       ///< "yuragi 0.1.0"
@@ -47,16 +47,16 @@ struct Info {
 /// when a doubt of the clock begins and ends. Must not throw.
 using RecorderReport = std::function<void(std::string_view)>;
 
-/// How long a Recorder waits, and for what.
+/// The time limits of a Recorder.
 struct RecorderLimits {
   Nanoseconds commit_every = std::chrono::seconds(1);
-  Nanoseconds hang_after = std::chrono::seconds(5);   ///< a disk that has not answered for so long hangs
+  Nanoseconds hang_after = std::chrono::seconds(5);   ///< a disk that has not responded for this long hangs
   Nanoseconds most_at_end = std::chrono::seconds(5);  ///< close() waits no longer
 };
 
-/// What a Recorder's thread does: takes readings from a ring, writes them to the recording, and begins a new file and
-/// deletes old ones by the rules. If the disk hangs,
-/// the thread does, too, and nobody else: the other functions wait for no disk, except for the constructor's.
+/// The work of a Recorder's thread: takes readings from a ring, writes them to the recording, and begins a new file and
+/// deletes old ones by the rules. If the disk hangs, only this thread hangs: the other functions do not wait for the
+/// disk, except for the constructor.
 class RecorderWorker {
  public:
   static constexpr std::size_t kMaxPending = 65'536;
@@ -68,7 +68,7 @@ class RecorderWorker {
                  RecorderReport report, const RecorderLimits& limits, std::filesystem::path synchronized_file,
                  RecorderStart start);
 
-  /// Writes until `stop` is requested, then what is left, and closes the file.
+  /// Writes until `stop` is requested, then the rest, and closes the file.
   void run(const std::stop_token& stop);
 
   /// As Recorder::push(). Realtime-safe: yes; wait-free.
@@ -170,7 +170,7 @@ class RecorderWorker {
   std::vector<Entry> pending_;
   std::vector<QuantitiesEntry> pending_quantities_;
   std::optional<drivers::windlog::SeriesLock> lock_;  ///< held while anything is opened, written or renamed
-  bool was_held_elsewhere_ = false;  ///< the lock, so that what is pending may be in the recording already
+  bool was_held_elsewhere_ = false;  ///< the lock, so that pending readings can already be in the recording
   bool has_reported_no_locks_ = false;
   std::optional<drivers::windlog::Writer> writer_;
   drivers::windlog::FileIdentity identity_;  ///< of the file that writer_ writes

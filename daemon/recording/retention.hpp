@@ -17,8 +17,8 @@ namespace yuragi::daemon::recording {
 /// clock has been set back to before its beginning, because that day may be far away.
 bool is_complete(const settings::RecordingConfig& rules, UtcTime begin, std::uint64_t bytes, UtcTime now);
 
-/// What a recording may grow by between two looks at its size: SQLite's log beside the file (1000 pages of 4 KiB until
-/// they are moved into it) and the file itself, with room to spare.
+/// The maximum growth of a recording between two checks of its size: SQLite's log beside the file (1000 pages of 4 KiB
+/// until they are moved into it) and the file itself, with room to spare.
 inline constexpr std::uint64_t kGrowthBetweenLooks_bytes = 8'000'000;
 
 /// The same rules with their limits tightened by kGrowthBetweenLooks_bytes, so that the limits hold until the next
@@ -32,7 +32,7 @@ struct KeptPart {
   std::uint64_t bytes = 0;
 };
 
-/// Age deletes at most so many completed files for each one that is completed, at any date.
+/// Age deletes at most this many completed files for each one that is completed, at any date.
 inline constexpr std::size_t kMaxDeletedByAge = 2;
 
 /// A completed file that is to be deleted.

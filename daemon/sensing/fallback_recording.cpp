@@ -12,7 +12,7 @@
 namespace yuragi::daemon::sensing {
 namespace {
 
-// A recording that cannot be opened is tried again after so long.
+// A recording that cannot be opened is tried again after this.
 constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
 
 settings::SensorConfig fallback_sensor(const settings::FallbackConfig& fallback) {
@@ -50,7 +50,7 @@ FallbackRecording::FallbackRecording(const settings::Config& config, const drive
 void FallbackRecording::change(const settings::Config& config) {
   if (!sensor_) return;
   take_settings(config);
-  // It plays seldom, and begins anew whenever it does: what was found out about its last readings may be lost.
+  // It plays rarely, and starts again each time: findings about its last readings can be dropped.
   judge_ = wind::judging::ReadingJudge(judged_by_.value_or(wind::judging::JudgeSettings{}));
 }
 

@@ -15,7 +15,7 @@ class HeldClock final : public drivers::sensor::Clock {
   void hold(const Instant& moment) noexcept { held_ = moment; }
   void let_go() noexcept { held_.reset(); }
 
-  /// What the machine's clocks show meanwhile.
+  /// The time of the machine's clocks meanwhile.
   Instant of_machine() const noexcept { return system_.now(); }
 
  private:

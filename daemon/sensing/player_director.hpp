@@ -35,8 +35,8 @@ class PlayerDirector {
   /// Carries out a client's command; the reply has the reason for a refusal. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
 
-  /// What the clock of the recording machine showed at the place that is played now: by the newest reading, and the
-  /// time for which it has held. Nullopt until a recording plays.
+  /// The time of the recording machine's clock at the present position: by the newest reading, plus the time since.
+  /// Nullopt until a recording plays.
   std::optional<UtcTime> recorded_clock() const;
 
  private:

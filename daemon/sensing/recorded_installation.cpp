@@ -25,14 +25,14 @@ constexpr std::size_t kMaxChangesNamed = 5;
 class SilentSensor final : public drivers::sensor::Sensor {
  public:
   MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
-    if (!std::exchange(has_told_, true)) {
+    if (!std::exchange(has_reported_, true)) {
       sink.link(wind::LinkState::kFinished, "the recording has no reading of it");
     }
     return clock.now().mono + std::chrono::hours(1);
   }
 
  private:
-  bool has_told_ = false;
+  bool has_reported_ = false;
 };
 
 /// Returns a failure to read a recording as a failure of its data, with any error code of SQLite.
@@ -90,7 +90,8 @@ void leave_out_what_acts_outside(settings::Config& config, std::vector<std::stri
 }
 
 /// Returns true if this sensor has a reading from a log time on.
-Result<bool, Failure> speaks_after(drivers::windlog::Reader& reader, const std::string& sensor, Nanoseconds begin) {
+Result<bool, Failure> has_readings_after(drivers::windlog::Reader& reader, const std::string& sensor,
+                                         Nanoseconds begin) {
   std::vector<bool> is_it;
   for (const auto& candidate : reader.sensors()) is_it.push_back(candidate.name == sensor);
   if (std::ranges::find(is_it, true) == is_it.end()) return false;
@@ -147,18 +148,19 @@ Result<RecordedInstallation, Failure> recorded_installation(const std::filesyste
 
   bool is_any_played = false;
   for (settings::SensorConfig& sensor : installation.config.sensors) {
-    const auto speaks = speaks_after(*reader, sensor.name, *begin);
-    if (!speaks) return speaks.error();
-    is_any_played = is_any_played || *speaks;
-    if (!*speaks) installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));
+    const auto has_readings = has_readings_after(*reader, sensor.name, *begin);
+    if (!has_readings) return has_readings.error();
+    is_any_played = is_any_played || *has_readings;
+    if (!*has_readings)
+      installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));
     sensor.blend.unchanged_for_s /= options.rate;
     drivers::windlog::PlayerOptions of_sensor = options;
     of_sensor.playback.sensor = sensor.name;
     of_sensor.stays_with_others = true;
     sensor.stand_in = settings::StandIn{
         .recording = recording,
-        .open = [recording, of_sensor, speaks = *speaks]() -> std::unique_ptr<drivers::sensor::Sensor> {
-          if (!speaks) return std::make_unique<SilentSensor>();
+        .open = [recording, of_sensor, has_readings = *has_readings]() -> std::unique_ptr<drivers::sensor::Sensor> {
+          if (!has_readings) return std::make_unique<SilentSensor>();
           return drivers::recording::play_recording(recording, of_sensor);
         }};
   }

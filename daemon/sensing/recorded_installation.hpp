@@ -15,7 +15,7 @@ namespace yuragi::daemon::sensing {
 struct RecordedInstallation {
   settings::Config config;
   UtcTime begin{};                   ///< what its clock showed where the replay begins
-  std::vector<std::string> remarks;  ///< sentences for the log: what is not as it was recorded
+  std::vector<std::string> remarks;  ///< sentences for the log: differences from the recorded installation
 };
 
 /// Reads the configuration of the session in which the replay begins. Each of its sensors is played from the recording

@@ -7,7 +7,7 @@
 namespace yuragi::daemon::sensing {
 namespace {
 
-/// Before its second reading nobody knows how often a station speaks; all but a few speak within this.
+/// Before its second reading a station's interval is unknown; almost all stations send within this.
 constexpr double kSecondReadingWithin_s = 120.0;
 
 bool awaits_second_reading(const wind::SourceReport& report) {
@@ -121,7 +121,7 @@ wind::judging::SensorState state_of(const SensorEvidence& evidence) {
       if (!awaits_second_reading(evidence.report)) return wind::judging::SensorState::kStale;
       break;
     case wind::SourceHealth::kLive:
-      // Nothing explains the silence of a device that has gone.
+      // Nothing explains the silence of a disconnected device.
       if (evidence.report.is_overdue && !is_connected) return wind::judging::SensorState::kDisconnected;
       break;
   }

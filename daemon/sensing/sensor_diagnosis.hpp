@@ -43,8 +43,8 @@ enum class DirectionStandIn : std::uint8_t {
   kConfigured,   ///< the default of the configuration
 };
 
-/// Why a quantity is missing for a person: since when, what stands in for it, and what to do. `age_s`: of the last one;
-/// nullopt: it has never come. Pure.
+/// Why a quantity is missing, for a person: since when, its replacement, and what to do. `age_s`: of the last one;
+/// nullopt: never received. Pure.
 std::string missing_text(wind::judging::Quantity quantity, std::optional<double> age_s, DirectionStandIn stand_in);
 
 /// The state. While readings arrive, a fault takes precedence over the kind of source (simulated, replayed). Once they

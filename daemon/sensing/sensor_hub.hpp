@@ -47,7 +47,7 @@ class SensorHub {
   /// Polls each sensor on a thread of its own from now on.
   void begin_threads();
 
-  /// Takes what may change while it runs from a configuration with the same sensors in the same order
+  /// Takes the values that can change while it runs from a configuration with the same sensors in the same order
   /// (ReloadPlan::next): calibration and judging, and the rate of recordings that play. Counts, states and what is
   /// known of each sensor stay; a new calibration is neither a spike nor a contradiction to the other sensors.
   void change(const settings::Config& config);
@@ -72,15 +72,15 @@ class SensorHub {
   /// What is known of the site's gusts; updated while a fast sensor of the site is live. Belongs to this thread.
   const std::shared_ptr<wind::turbulence::SiteSpectrum>& site() const noexcept { return site_; }
 
-  /// What was learnt of how the sensors differ, by their names; only of those of which something is known.
+  /// The learnt differences between the sensors, by their names; only known ones.
   wind::judging::LearntByName relative_gains() const;
-  /// Goes on from that of an earlier run; names that are not of this installation are left out. False, and nothing
-  /// changes, if it cannot have been learnt (GroupGains::restore()).
+  /// Continues from an earlier run's result; names that are not of this installation are ignored. Returns false, and
+  /// changes nothing, if it is implausible (GroupGains::restore()).
   bool restore_relative_gains(const wind::judging::LearntByName& learnt);
 
-  /// How far gusts are alike at this site, as learnt from sensors at several places (BlendedEstimator::reach).
+  /// The reach of gusts at this site, as learnt from sensors at several places (BlendedEstimator::reach).
   const wind::blend::GustReach& gust_reach() const noexcept { return estimator_.reach(); }
-  /// Goes on from that of an earlier run. False, and nothing changes, if it cannot have been learnt.
+  /// Continues from an earlier run's result. Returns false, and changes nothing, if it is implausible.
   bool restore_gust_reach(const wind::blend::GustReach& learnt) noexcept { return estimator_.restore_reach(learnt); }
 
   /// The status of each sensor, and of the fall-back while it plays.
@@ -101,7 +101,7 @@ class SensorHub {
   /// The controls of the sensors that play a recording; they live as long as the hub.
   std::vector<NamedPlayer> players();
 
-  /// True when every sensor is a recording that has come to its end.
+  /// Returns true if every sensor is a recording that has ended.
   bool is_finished() const;
 
  private:

@@ -41,7 +41,7 @@ SensorJury::Verdict SensorJury::hear(std::size_t sensor, const wind::Reading& re
     member.record.hold(reading.time);
     return Verdict::kBelieved;
   }
-  const bool repeats = member.record.has_reading() && wind::says_the_same(reading, *member.record.last());
+  const bool repeats = member.record.has_reading() && wind::has_same_values(reading, *member.record.last());
   if (!member.record.take(reading) && repeats) {
     // A repeated message has been judged.
     return member.is_last_believed ? Verdict::kBelieved : Verdict::kDoubted;

@@ -44,8 +44,8 @@ class SensorJury {
   /// Judges the next reading of a sensor, calibrated, and not of the future.
   Verdict hear(std::size_t sensor, const wind::Reading& reading) noexcept;
 
-  /// The reading that hear() has just been given, levelled: what goes to the estimator. The same bits if nothing was
-  /// learnt. A repeated reading is levelled as it was the first time.
+  /// The reading that hear() has just taken, levelled, for the estimator. The same bits if nothing was learnt. A
+  /// repeated reading is levelled as it was the first time.
   wind::Reading levelled(std::size_t sensor, wind::Reading reading) const noexcept;
 
   /// Readings that were refused before they came here as impossible.
@@ -57,15 +57,15 @@ class SensorJury {
   /// Judges a sensor by other rules from now on; its `unchanged_for_s` stays. What is known of it stays, too.
   void change(std::size_t sensor, const JuryRules& rules);
 
-  /// A sensor's calibration has changed. `last`: its last reading by the one before, and by the new one; none: it has
-  /// sent none. How it differs from the others is learnt anew.
+  /// Call when a sensor's calibration has changed. `last`: its last reading by the old one, and by the new one;
+  /// nullopt: it has sent none. Its difference from the others is learnt again.
   void recalibrate(std::size_t sensor, const std::optional<std::pair<wind::Reading, wind::Reading>>& last) noexcept;
 
   const wind::judging::ReadingJudge& judge(std::size_t sensor) const noexcept { return members_[sensor].judge; }
   const wind::judging::SensorVote& vote() const noexcept { return vote_; }
   const wind::judging::GroupGains& gains() const noexcept { return gains_; }
-  /// Goes on from what was learnt before, one for each sensor (GroupGains::restore()). What was learnt of one that is
-  /// not compared any more is left out; if nothing is levelled, all is.
+  /// Continues from what was learnt before, one for each sensor (GroupGains::restore()). Values of sensors that are not
+  /// compared any more are ignored; if nothing is levelled, all are.
   bool restore_gains(std::span<const wind::judging::GroupGains::Learnt> learnt);
   /// How many times the group's wind it reads; 1: it is not levelled.
   double reads_times_group(std::size_t sensor) const noexcept;

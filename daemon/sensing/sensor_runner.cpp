@@ -112,7 +112,7 @@ void SensorRunner::raw(drivers::sensor::RawDirection direction, std::span<const 
 void SensorRunner::trace(bool wanted) {
   if (wanted == is_trace_wanted_.load(std::memory_order_relaxed)) return;
   if (wanted && !trace_) trace_ = std::make_unique<SpscRing<RawMessage>>(kTraceCapacity);
-  if (wanted) drain_trace([](const RawMessage&) {});  // discards what is left of an earlier trace
+  if (wanted) drain_trace([](const RawMessage&) {});  // discards the rest of an earlier trace
   is_trace_wanted_.store(wanted, std::memory_order_release);
 }
 

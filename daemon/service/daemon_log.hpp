@@ -25,8 +25,8 @@ namespace yuragi::daemon::service {
 class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::details::console_mutex> {
  public:
   static constexpr int kPatience_ms = 200;
-  /// What a pipe takes at once if it takes anything (POSIX: PIPE_BUF is 512 at least, 4096 on Linux), less what
-  /// stands before the text.
+  /// The number of bytes that a pipe takes at once if it takes any (POSIX: PIPE_BUF is 512 at least, 4096 on Linux),
+  /// minus the prefix of the text.
   static constexpr std::size_t kMaxTextBytes = 3800;
 
   explicit BoundedLogSink(std::FILE* stream);
@@ -71,7 +71,7 @@ class DaemonLog {
   /// Gives the number of contained exceptions by their kind. Thread-safe; may outlive this object.
   static web::FaultCounter fault_counter();
 
-  ~DaemonLog();  ///< writes what waits, as far as it is taken
+  ~DaemonLog();  ///< writes the waiting lines, as far as they are taken
   DaemonLog(const DaemonLog&) = delete;
   DaemonLog& operator=(const DaemonLog&) = delete;
 

@@ -10,7 +10,7 @@ namespace {
 constexpr stream::LogAllowance::Settings kOneEachInterval{
     .burst = 1.0,
     .per_s = 1.0 / std::chrono::duration<double>(FaultLog::kInterval).count(),
-    .told_every = Nanoseconds::zero()};
+    .report_every = Nanoseconds::zero()};
 
 }  // namespace
 
@@ -21,7 +21,7 @@ std::optional<std::string> FaultLog::line_for(std::string_view kind, std::string
   auto& [count, allowance] = found->second;
   ++count;
   if (!allowance.take(now)) return std::nullopt;
-  const std::uint64_t left_out = allowance.tell_left_out(now);
+  const std::uint64_t left_out = allowance.take_left_out(now);
   const std::string since = left_out > 0 ? fmt::format(" ({} more since the last such line)", left_out) : "";
   std::string text(what);
   make_printable(text);

@@ -5,8 +5,8 @@
 
 namespace yuragi::daemon::service {
 
-/// Takes SIGHUP from now on, also one that was held back; what comes before somebody waits for it is kept. To be made
-/// before any thread and any child, which inherit what is held back.
+/// Takes SIGHUP from now on, also one that was held back; a signal that arrives before anybody waits for it is kept.
+/// Make it before any thread and any child, which inherit blocked signals.
 struct Hangups {
   explicit Hangups(boost::asio::io_context& io);
   boost::asio::signal_set signals;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::string_view kShownKey = "shown";
 
-/// What was done, for a person.
-std::string told(const std::vector<std::string>& changes) {
+/// A text about the changes, for a person.
+std::string changes_text(const std::vector<std::string>& changes) {
   if (changes.empty()) return "nothing has changed";
   return fmt::format("{} (until the configuration is read again)", fmt::join(changes, "; "));
 }
@@ -43,7 +43,7 @@ void ParameterDirector::handle(const wire::ParameterCommand& command, bool is_lo
   for (const wire::ParameterEdit& edit : command.edits) edits.push_back({command.scene, edit.key, edit.value});
   if (auto mistake = reload_.mistake_in(edits)) return answer(false, std::move(*mistake));
 
-  // What is shown is switched as by any other client, independent of the configuration.
+  // Showing scenes is switched as by any other client, independent of the configuration.
   std::vector<std::string> done;
   const auto is_shown_key = [](const settings::ParameterEdit& edit) { return edit.key == kShownKey; };
   if (!command.scene.empty()) {
@@ -60,13 +60,13 @@ void ParameterDirector::handle(const wire::ParameterCommand& command, bool is_lo
     }
     std::erase_if(edits, is_shown_key);
   }
-  if (edits.empty()) return answer(true, told(done));
+  if (edits.empty()) return answer(true, changes_text(done));
   reload_.set(edits, [answer, done, is_local](const wire::ReloadReport& made) {
     const wire::ReloadReport report = is_local ? made : without_folders(made);
     if (report.outcome != wire::ReloadOutcome::kDone) return answer(false, summary_of(report));
     std::vector<std::string> changes = done;
     changes.insert(changes.end(), report.applied.begin(), report.applied.end());
-    answer(true, told(changes));
+    answer(true, changes_text(changes));
   });
 }
 

@@ -54,7 +54,7 @@ void log(const wire::ReloadReport& report, const std::string& file) {
 
 }  // namespace
 
-/// One reload, from its request to its result. Its thread uses nothing else.
+/// One reload, from its request to its result. Its thread uses only this.
 struct Reload::Task {
   std::function<void(std::function<void()>)> post;
   std::function<settings::Config()> read;
@@ -92,7 +92,7 @@ void Reload::Task::work(const std::function<void()>& done) {
   const std::lock_guard lock(mutex);
   has_read = true;
   changed.notify_all();
-  if (!is_given_up) post(done);  // the daemon still stands: its end takes the same mutex
+  if (!is_given_up) post(done);  // the daemon still exists: its end takes the same mutex
 }
 
 void Reload::Task::try_to_work() {
@@ -255,7 +255,7 @@ void Reload::finish() {
   answer(done, task->report);
 }
 
-/// Then begins what is due.
+/// Then begins the next task.
 void Reload::answer(const Due& done, const wire::ReloadReport& report) {
   if (done.reads_file) log(report, parts_.file);
   for (const Reply& reply : done.asked) reply(report);

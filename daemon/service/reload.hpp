@@ -16,7 +16,7 @@
 
 namespace yuragi::daemon::service {
 
-/// What a Reload needs of the daemon.
+/// The parts of the daemon that a Reload needs.
 struct ReloadParts {
   /// Carries out a function on the I/O thread, soon. Call it on any thread.
   std::function<void(std::function<void()>)> post;
@@ -27,7 +27,7 @@ struct ReloadParts {
   std::function<settings::Config()> read;
 
   /// Returns the problems of the next start with the configuration that was read, as texts for people; it is applied
-  /// all the same. On the reload's thread, and so it owns all that it uses. Empty: nothing is tried.
+  /// anyway. On the reload's thread, and so it owns all that it uses. Empty: no check.
   std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
 
   /// Makes the scenes of a configuration, on the reload's thread. What it returns brings them to the animation, on the
@@ -62,7 +62,7 @@ class Reload {
  public:
   using Reply = std::function<void(const wire::ReloadReport&)>;
 
-  /// At most so many clients wait for a reload; further ones are refused with "try again".
+  /// At most this many clients wait for a reload; further ones are refused with "try again".
   static constexpr std::size_t kMaxWaiting = 64;
 
   static constexpr Nanoseconds kMaxRead = std::chrono::seconds(20);
@@ -71,7 +71,7 @@ class Reload {
   /// `running`: the configuration that the daemon began with.
   Reload(const settings::Config& running, ReloadParts parts);
 
-  /// Gives up what is under way: waits for scenes that are being made, but not for a disk that hangs.
+  /// Abandons the present reload: waits for scenes that are being made, but not for a disk that hangs.
   ~Reload();
   Reload(const Reload&) = delete;
   Reload& operator=(const Reload&) = delete;
@@ -85,16 +85,15 @@ class Reload {
   /// Returns what is wrong with such edits; nullopt if nothing is.
   std::optional<std::string> mistake_in(const std::vector<settings::ParameterEdit>& edits) const;
 
-  /// What runs, with the values that were set, and the values of the file when it was read last, as far as they are
-  /// applied.
+  /// The running values, including those set by clients, and the values of the file when it was last read, as far as
+  /// they are applied.
   const settings::Config& running() const noexcept { return *running_; }
   const settings::Config& configured() const noexcept { return *configured_; }
 
   /// Begins the reload that waits, if one does. Call it whenever the last one may have been carried out.
   void go_on();
 
-  /// Gives up a file that has been read for longer than kMaxRead, as far as the calls show: call it about every second,
-  /// with the time.
+  /// Gives up a file that has been read for longer than kMaxRead; call it about every second, with the time.
   void give_up_late(MonoTime now);
 
   /// Returns true while the file is waiting to be read, being read, or not yet applied.

@@ -152,7 +152,7 @@ class Service::Io {
     read_token();
     open_page();
     for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
-    // What is replayed has happened already.
+    // A replay's events are in the past.
     if (!options.recorded_from) {
       alerts_.emplace(config.alerts, asio::ip::host_name(), settings::state_file(options.config_file, "alerts.json"),
                       clock_.now());
@@ -199,7 +199,7 @@ class Service::Io {
       loop_->start();
     } else {
       is_up_ = true;
-      say_ready();
+      report_ready();
     }
 
     while (!contain("a task of the I/O thread", [this] { io_.run(); })) {
@@ -281,7 +281,7 @@ class Service::Io {
         });
   }
 
-  // ---- the token and the page: what does not work at the start is tried again ----
+  // ---- the token and the page: if they fail at the start, they are tried again ----
 
   /// Reads the token, unless it is known. Returns true if it was not known before.
   bool read_token() {
@@ -400,11 +400,11 @@ class Service::Io {
 
   void reload(const std::string& expected_file, Reload::Reply reply) {
     reload_.request(expected_file, std::move(reply));
-    if (reload_.is_under_way()) manager_.say_reloading();
+    if (reload_.is_under_way()) manager_.report_reloading();
   }
 
-  /// Hands the scenes that wait to the animation, unless too many cues do; then with the next frame. What they have
-  /// replaced is freed once it has faded out.
+  /// Passes waiting scenes to the animation, unless too many cues wait; then with the next frame. The replaced scenes
+  /// are freed once they have faded out.
   void exchange_scenes() {
     if (next_scenes_ && scenes_->begin(next_scenes_)) parameters_.note_change();
     if (scenes_->take_finished()) reload_.go_on();
@@ -553,20 +553,20 @@ class Service::Io {
     note_opacities(*frame);
     exchange_scenes();
     is_up_ = true;
-    say_ready();
+    report_ready();
   }
 
   /// At first, and again after each reload.
-  void say_ready() {
-    if (is_up_ && !reload_.is_under_way()) manager_.say_ready();
+  void report_ready() {
+    if (is_up_ && !reload_.is_under_way()) manager_.report_ready();
   }
 
   void send_status() {
     contain("giving up a reload", [this] { reload_.give_up_late(clock_.now().mono); });
     contain("the status", [this] {
       const wire::Sensors status = publish_status();
-      manager_.say_status(status);
-      say_ready();
+      manager_.report_status(status);
+      report_ready();
       if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
     });
 
@@ -581,7 +581,7 @@ class Service::Io {
     return loop_->counters().ticks.load(std::memory_order_relaxed);
   }
 
-  /// Returns what clients of this machine are sent.
+  /// Returns the status for clients of this machine.
   wire::Sensors publish_status() {
     wire::Sensors status;
     status.sensors = hub_.status();
@@ -640,7 +640,7 @@ class Service::Io {
 
   void log_summary() const;
 
-  /// The scenes stand still for good: the service manager starts the daemon again.
+  /// The scenes do not move any more: the service manager restarts the daemon.
   void end_with_failure(const std::string& why) {
     failure_ = "the animation has failed (" + why + ")";
     spdlog::critical("{}: a fault of this program; it ends, so that it is started again", *failure_);
@@ -649,7 +649,7 @@ class Service::Io {
 
   void end(const char* why) {
     spdlog::info("ending: {}", why);
-    manager_.say_stopping(why);
+    manager_.report_stopping(why);
     if (loop_) loop_->stop();
     stream_.close();
     if (web_) web_->close();
@@ -687,8 +687,8 @@ class Service::Io {
   Secret token_;                              ///< empty: there is none, or it cannot be read
   std::string token_trouble_, page_trouble_;  ///< empty: none
 
-  // In this order, so that a second daemon fails at the address in use before it touches a sensor. The recording is
-  // opened last, once nothing else can fail: a start that fails writes nothing into it.
+  // In this order, so that a second daemon fails at the used address before it opens a sensor. The recording is opened
+  // last, once nothing else can fail: a start that fails writes nothing into it.
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   std::unique_ptr<animation::Animation> animation_;
   animation::SceneDirector director_;
@@ -726,7 +726,7 @@ std::unique_ptr<recording::Recorder> Service::Io::make_recorder(const settings::
   return std::make_unique<recording::Recorder>(
       file, recording_info(config, started_), [](std::string_view news) { spdlog::warn("recording: {}", news); },
       recording::RecorderLimits{}, config.recording, recording::kSynchronizedFile,
-      // A wall goes on without a recording; a program that only records has nothing to go on with.
+      // A wall runs without a recording; a program that only records has no other purpose.
       options_.with_scenes ? recording::RecorderStart::kRetries : recording::RecorderStart::kMustOpen);
 }
 

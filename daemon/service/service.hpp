@@ -19,8 +19,8 @@ struct Options {
   bool with_scenes = true;                      ///< false: sensors, recording and their stream only
   /// Opening hours by the clock of the recordings that play, from this moment on; nullopt: by this machine's clock.
   std::optional<UtcTime> recorded_from{};
-  /// Only if every sensor plays a recording: before the first frame wind and scenes go through so many seconds
-  /// before the place at which the recordings begin, as fast as they can.
+  /// Only if every sensor plays a recording: before the first frame wind and scenes are advanced through this time
+  /// before the start of the recordings, as fast as possible.
   double lead_s = 0.0;
 
   /// The file of the configuration, and how it is read again on SIGHUP or for a client: on another thread, which may
@@ -46,9 +46,9 @@ struct Options {
 /// caller of run().
 class Service {
  public:
-  /// Opens the listening socket, the sensors and, when all else stands, the recording: a start that fails leaves it as
-  /// it was. Throws ConfigError or FailureError. SIGINT and SIGTERM keep their default action until run(); a SIGHUP
-  /// that was held back (hold_back_hangups()) waits for it.
+  /// Opens the listening socket, the sensors and, last of all, the recording: a start that fails does not change it.
+  /// Throws ConfigError or FailureError. SIGINT and SIGTERM keep their default action until run(); a SIGHUP that was
+  /// held back (hold_back_hangups()) waits for it.
   Service(const settings::Config& config, const Options& options);
   ~Service();
 

@@ -14,22 +14,22 @@ Manager::Manager(platform::ServiceEnvironment service, bool with_animation) : so
   if (socket_.is_open() && service.is_ours && service.watchdog) watchdog_.emplace(*service.watchdog, with_animation);
 }
 
-void Manager::say_ready() {
+void Manager::report_ready() {
   is_ready_ = is_ready_ || socket_.send("READY=1");
 }
 
-void Manager::say_reloading() {
+void Manager::report_reloading() {
   if (is_ready_ && socket_.send("RELOADING=1")) is_ready_ = false;
 }
 
-void Manager::say_status(const wire::Sensors& status) {
+void Manager::report_status(const wire::Sensors& status) {
   const auto live = std::ranges::count(status.sensors, wind::SourceHealth::kLive, &wire::SensorStatus::health);
   const std::string line = fmt::format("{} of {} live, {}", live, count_text(status.sensors.size(), "sensor"),
                                        count_text(status.clients, "client"));
   if (line != status_ && socket_.send("STATUS=" + line)) status_ = line;
 }
 
-void Manager::say_stopping(const std::string& why) {
+void Manager::report_stopping(const std::string& why) {
   socket_.send("STOPPING=1\nSTATUS=ending: " + why);
 }
 

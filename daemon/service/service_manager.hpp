@@ -11,25 +11,26 @@
 namespace yuragi::daemon::service {
 
 /// Reports to systemd that the daemon is ready, a line on its state, that it ends, and that it is alive.
-/// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: what a service manager that
-/// hangs does not take is sent again later. For the I/O thread.
+/// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: a message that a hanging
+/// service manager does not take is sent again later. For the I/O thread.
 class Manager {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
   explicit Manager(bool with_animation);
   /// READY=1, until it is taken.
-  void say_ready();
+  void report_ready();
 
   /// RELOADING=1, which the next READY=1 ends.
-  void say_reloading();
+  void report_reloading();
 
   /// STATUS=: one plain line, of the status that clients get. Sent if it differs from the last line.
-  void say_status(const wire::Sensors& status);
+  void report_status(const wire::Sensors& status);
 
   /// STOPPING=1.
-  void say_stopping(const std::string& why);
+  void report_stopping(const std::string& why);
 
-  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog if that is due.
+  /// Call when the I/O thread has completed a round; `animation_ticks`: the animation's ticks so far. Feeds the
+  /// watchdog if that is due.
   void went_round(MonoTime now, std::uint64_t animation_ticks);
 
  private:

@@ -7,15 +7,15 @@
 namespace yuragi::daemon::service {
 
 /// Decides when a service manager's watchdog is fed: at most every quarter of its time-out, and only when both the I/O
-/// thread and the animation have gone round since it was fed last. What else may hang (a disk, a device) is a state
-/// that the stream shows, and does not stop the feeding of the watchdog. Pure; for one thread.
+/// thread and the animation have completed a round since it was last fed. Other parts that hang (a disk, a device) are
+/// shown in the stream, and do not stop the feeding. Pure; for one thread.
 class WatchdogFeed {
  public:
-  /// `timeout`: the service manager restarts a program that has not fed its watchdog for so long. Without an animation
-  /// the I/O thread alone has to go round.
+  /// `timeout`: the service manager restarts a program that has not fed its watchdog for this long. Without an
+  /// animation only the I/O thread is watched.
   WatchdogFeed(Nanoseconds timeout, bool with_animation) : interval_(timeout / 4), with_animation_(with_animation) {}
 
-  /// The I/O thread has gone round once more.
+  /// Call when the I/O thread has completed a round.
   void io_went_round() { io_has_ = true; }
 
   /// How many ticks the animation has made until now.

@@ -81,7 +81,7 @@ const Fields<AlertTable>& alert_fields() {
       {{.name = "webhook",
         .default_value = Secret(),
         .help = "an URL, http:// or https://, to which the same is posted as JSON: alert, state, message, host, "
-                "time, and text for chat services; if it does not answer, it is tried again for a day; empty: none"},
+                "time, and text for chat services; if it does not reply, it is tried again for a day; empty: none"},
        of_alert(&AlertConfig::webhook)},
   };
   return kFields;

@@ -16,7 +16,7 @@ namespace yuragi::daemon::settings {
 /// More than any installation needs.
 inline constexpr std::size_t kMaxAlerts = 64;
 
-/// What an [[alert]] is about.
+/// The condition of an [[alert]].
 enum class AlertCondition : std::uint8_t {
   kSensorSilent,  ///< a sensor's readings are not used, for any reason
   kWindAbove,     ///< the wind that the sensors make together, before it is shaped for the scenes
@@ -35,8 +35,8 @@ struct AlertConfig {
   std::string sensor = {};   ///< kSensorSilent: the sensor's name; empty: each one by itself
   double speed_m_s = 0.0;    ///< kWindAbove
   double free_bytes = 0.0;   ///< kDiskBelow
-  double after_s = 0.0;      ///< it begins when it has held for so long
-  double end_after_s = 0.0;  ///< it ends when it has not held for so long
+  double after_s = 0.0;      ///< it begins when the condition has lasted this long
+  double end_after_s = 0.0;  ///< it ends when the condition has been absent this long
   std::string command = {};  ///< for /bin/sh; empty: none
   Secret webhook = {};       ///< http or https; empty: none
 };

@@ -65,18 +65,18 @@ struct Config {
   std::vector<SceneConfig> scenes;    ///< at least one
   std::vector<CameraConfig> cameras;
   std::vector<AlertConfig> alerts;
-  std::vector<output::Table> outputs;  ///< the viewers', who read the file themselves; here they are checked
+  std::vector<output::Table> outputs;  ///< for the viewers, which read the file themselves; only checked here
   feeds::Lists lists;                  ///< the entries of feeds::list_tables(), as they are written
   feeds::Config feeds;                 ///< made of them
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC if no camera has a time
 
-  /// The values of config_tables(), from which members above were made. For what writes, compares or changes them only.
+  /// The values of config_tables(), from which the members above were made. Only for writing, comparing and changing
+  /// them.
   TablesByName by_name;
 };
 
-/// The tables that occur once in the file, and the keys at its top, whose name is empty: of each what its keys are, and
-/// what they make of a Config. All that reads, writes, describes, compares or changes a configuration goes through
-/// them.
+/// The tables that occur once in the file, and the keys at its top, whose name is empty: for each its keys, and their
+/// effect on a Config. All functions that read, write, describe, compare or change a configuration use them.
 using ConfigTable = TableOf<Config>;
 std::span<const ConfigTable> config_tables();
 

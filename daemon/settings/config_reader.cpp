@@ -67,7 +67,7 @@ std::span<const scenes::RetiredParameter> retired_of(const scenes::Description& 
   return scene.retired;
 }
 
-/// What a [[sensor]] of any kind holds besides its driver's keys.
+/// The keys of a [[sensor]] of any kind, besides its driver's keys.
 std::set<std::string_view> keys_beside(const drivers::sensor::DriverDescription&) {
   std::set<std::string_view> keys = {kNameKey, "driver"};
   for (const SensorTable& table : sensor_tables()) keys.insert(table.name);
@@ -81,7 +81,7 @@ bool is_list(const toml::node& node) {
   return node.is_array_of_tables() || (node.is_array() && node.as_array()->empty());
 }
 
-/// All that a file may have at its top, for a person.
+/// All names allowed at the top of a file, for a person.
 std::string top_level_names() {
   std::string names;
   for (const Parameter& parameter : config_table("").parameters) names += std::string(parameter.name) + ", ";
@@ -212,7 +212,7 @@ class ConfigReader {
   template <class Use>
   void for_each_table(const toml::table& root, std::string_view list, std::size_t most, const Use& use) {
     const toml::node* node = root.get(list);
-    if (node == nullptr || !is_list(*node)) return;  // check_top_level() has reported what is none
+    if (node == nullptr || !is_list(*node)) return;  // check_top_level() has reported it if it is not a list
     for (const toml::table* entry : tables::entries_of(root, list, std::string(list), most, mistakes_)) use(*entry);
   }
 
@@ -314,7 +314,7 @@ class ConfigReader {
     return nullptr;
   }
 
-  /// What a cloth looks like; of other scenes nothing.
+  /// The look of a cloth; default values for other scenes.
   look::ClothLook read_cloth(const toml::table& entry, const ParameterValues& values) {
     auto cloth = cloth_look_of(values, folder_);
     if (cloth) return std::move(*cloth);

@@ -18,7 +18,7 @@ struct HttpConfig {
 
 const Fields<HttpConfig>& http_fields();
 
-/// Fills it from the values of http_fields(). Returns what they contradict.
+/// Fills it from the values of http_fields(). Returns the contradictions.
 std::vector<ParameterError> fill_http(HttpConfig& http, const ParameterValues& values);
 
 }  // namespace yuragi::daemon::settings

@@ -13,7 +13,7 @@ class time_zone;
 
 namespace yuragi::daemon::settings {
 
-/// What the clocks of a time zone show, with its daylight saving time. Thread-safe: reading, yes.
+/// The local time of a time zone, with its daylight saving time. Thread-safe: reading, yes.
 class LocalClock {
  public:
   /// That of UTC.
@@ -23,7 +23,7 @@ class LocalClock {
   /// error names "zone".
   static Result<LocalClock, ParameterError> of_zone(const std::string& name);
 
-  /// As if the clocks had run since the midnight at which 1970 began there.
+  /// Local time since midnight, 1 January 1970, as if the clocks had run since then.
   std::chrono::seconds since_1970(UtcTime now) const;
 
   /// 0 to 24, less than that.

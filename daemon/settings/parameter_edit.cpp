@@ -75,7 +75,7 @@ std::optional<ParameterError> edit_scene(Config& config, const Config& configure
   if (!values) return error_in("scene", values.error());
   auto cloth = cloth_look_of(*values, std::nullopt);
   if (!cloth) return error_in("scene", cloth.error().front());
-  // What else belongs to the scene stays.
+  // The rest of the scene does not change.
   cloth->image = scene->cloth.image;
   scene->cloth = std::move(*cloth);
   SceneConfig next = scene_config_of(scene->name, *scene->kind, std::move(*values));

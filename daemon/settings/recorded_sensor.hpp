@@ -10,8 +10,8 @@ namespace yuragi::daemon::settings {
 /// What the driver of a recorded sensor states about it. Default: it states nothing, or driver or options are
 /// unknown here.
 struct RecordedSource {
-  /// It speaks on change only: for how long, s, its silence means that nothing has changed
-  /// (DriverDescription::unchanged_for_s); 0: it does not.
+  /// For a sensor that sends only changes: the duration, s, for which silence means no change
+  /// (DriverDescription::unchanged_for_s); 0: it sends at intervals.
   double unchanged_for_s = 0.0;
   std::optional<drivers::sensor::StatedValue> value{};  ///< DriverDescription::stated_value
 };

@@ -21,7 +21,7 @@ std::string shown(const ParameterValues::Map& values, std::string_view key) {
   return text.size() > kMaxShownValue ? "..." : text;
 }
 
-/// A change for a person. Secrets look alike, and so do long texts.
+/// A change, for a person. Secrets look the same, and so do long texts.
 std::string change_text(const std::string& before, const std::string& after) {
   return before == after ? ": another value" : ": " + before + " -> " + after;
 }
@@ -63,7 +63,7 @@ class Comparison {
     return next;
   }
 
-  /// Does the same with all tables of an owner, which it makes anew if values change.
+  /// Does the same with all tables of an owner, which it makes again if values change.
   template <class Owner>
   void merge_tables(const std::string& who, const std::string& prefix, std::span<const TableOf<Owner>> tables,
                     Owner& next, const Owner& wanted) {
@@ -94,7 +94,7 @@ std::vector<std::string> common_order(const std::vector<Entry>& entries, const s
   return names;
 }
 
-/// Notes what is new, gone or in another order.
+/// Reports what is new, removed or in another order.
 template <class Entry>
 void compare_lists(Comparison& comparison, const char* list, KeyChange change, const std::vector<Entry>& running,
                    const std::vector<Entry>& wanted) {

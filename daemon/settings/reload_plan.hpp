@@ -9,7 +9,7 @@ namespace yuragi::daemon::settings {
 
 /// The way from the configuration that runs to another.
 struct ReloadPlan {
-  /// What runs afterwards: the running configuration with those values of the other that are applied.
+  /// The new running configuration: the old one with the applicable values of the other.
   Config next;
 
   /// What changes, for a person, in the order of the file: "[shaping] floor: 0.0 -> 1.5", "sensor roof: host:

@@ -126,7 +126,7 @@ drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
   drivers::sensor::StatedValue value = stated.value_or(drivers::sensor::StatedValue{});
   if (is_set) {
     value.value = static_cast<wind::ReadingValue>(name - wind::kReadingValueNames.begin());
-    // The time that the driver states is of what it states.
+    // The time that the driver states belongs to the value that it states.
     if (!stated || stated->value != value.value) value.averaging_s = 0.0;
   } else if (averaging_s > 0.0 && makes_wind(value.value)) {
     value.value = wind::ReadingValue::kMean;

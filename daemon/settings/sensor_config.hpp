@@ -24,7 +24,7 @@ struct SensorHeights {
   double scene_m = 10.0;             ///< the height whose wind moves the scenes
 };
 
-/// What takes a sensor's part if a recording is replayed as it was.
+/// Replaces a sensor if a recording is replayed as it was.
 struct StandIn {
   std::filesystem::path recording;
   std::function<std::unique_ptr<drivers::sensor::Sensor>()> open;

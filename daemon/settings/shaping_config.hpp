@@ -19,11 +19,11 @@ struct ShapingConfig {
   std::filesystem::path site_file{};  ///< keeps what was learnt of the site over a restart; empty: not kept
 };
 
-/// What the table [shaping] may hold.
+/// The keys of the table [shaping].
 std::span<const Parameter> shaping_parameters();
 
 /// Fills it from the values of shaping_parameters(); the breeze that the floor adds has the turbulence of `wind`.
-/// Returns what they contradict, and invalid hours.
+/// Returns the contradictions, and invalid hours.
 std::vector<ParameterError> fill_shaping(ShapingConfig& shaping, const ParameterValues& values, const WindConfig& wind);
 
 }  // namespace yuragi::daemon::settings

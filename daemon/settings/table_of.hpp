@@ -16,9 +16,9 @@ struct TableOf {
   std::string_view name;
   std::string_view summary;
   std::span<const Parameter> parameters;
-  KeyChange change;  ///< what a new value does, of a key that does not state it
-  /// Makes the owner's members of the values. Members that other tables before this one make are there. Returns what
-  /// the values contradict, with the keys.
+  KeyChange change;  ///< effect of a new value of a key that does not state it
+  /// Makes the owner's members from the values. Members of earlier tables are already set. Returns the contradictions,
+  /// with the keys.
   std::vector<ParameterError> (*fill)(Owner& owner, const ParameterValues& values);
 };
 

@@ -16,7 +16,7 @@ struct FallbackConfig {
   std::filesystem::path recording;
   double after_s = 0.0;  ///< for how long every sensor must have been silent
   std::string origin{};  ///< `file:line:column` of its key; empty: it is in no file
-  /// What was recorded spoke on change only (RecordedSource); 0: it did not, or this is not known yet.
+  /// The recorded sensor sent only changes (RecordedSource); 0: it did not, or this is not yet known.
   double unchanged_for_s = 0.0;
   drivers::sensor::StatedValue value{};  ///< what the recorded speeds are (RecordedSource)
 };
@@ -46,7 +46,7 @@ struct WindConfig {
 /// The keys of [wind].
 std::span<const Parameter> wind_parameters();
 
-/// Fills it from the values of wind_parameters(). Returns what they contradict.
+/// Fills it from the values of wind_parameters(). Returns the contradictions.
 std::vector<ParameterError> fill_wind(WindConfig& wind, const ParameterValues& values);
 
 }  // namespace yuragi::daemon::settings

@@ -19,7 +19,7 @@ struct SiteMemory {
   /// How its sensors differ. Empty in files of older versions.
   wind::judging::LearntByName gains{};
   std::string gains_refusal{};  ///< why those of the file are not read; empty: they are
-  /// How far its gusts are alike; as if nothing were known, if the file has none.
+  /// The reach of its gusts; the default if the file has none.
   wind::blend::GustReach reach{};
   std::string reach_refusal{};  ///< why that of the file is not read; empty: it is
 };

@@ -62,7 +62,7 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
     spdlog::warn("shaping: {}starting a new file: {}; {}", has_gain ? "site gain begins at 1; " : "",
                  memory ? site_path_.string() + ": has another format" : memory.error().message,
                  aside ? "it is kept as " + aside->string() : aside.error().message);
-    if (!aside) site_file_.reset();  // what it holds is not overwritten
+    if (!aside) site_file_.reset();  // its content is not overwritten
     return;
   }
   const double known_s = shaping_.memory().known_s();

@@ -18,7 +18,7 @@ namespace yuragi::daemon::shaping {
 template <typename T>
 struct Kept {
   std::function<T()> learnt;
-  /// False: it cannot have been learnt.
+  /// Returns false if it is implausible.
   std::function<bool(const T&)> restore;
 };
 

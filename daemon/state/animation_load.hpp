@@ -7,8 +7,7 @@
 
 namespace yuragi::daemon::state {
 
-/// A machine carries what fills so much of each tick on the average. The rest is for slower ticks, clients and other
-/// programs.
+/// The average part of each tick that a machine can use. The rest is for slower ticks, clients and other programs.
 inline constexpr double kCarriedShare = 0.5;
 
 /// How many times the present work of the animation this machine carries; nullopt if it is not known. Below 1 it is

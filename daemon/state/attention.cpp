@@ -12,7 +12,7 @@ void add_recorder_attention(std::vector<std::string>& all, const wire::RecorderS
   if (recorder.state == wire::RecorderState::kRetrying)
     all.push_back("the recorder cannot write, and tries again: " + recorder.error);
   if (recorder.state == wire::RecorderState::kHanging)
-    all.push_back("the disk of the recording does not answer: " + recorder.error);
+    all.push_back("the disk of the recording does not respond: " + recorder.error);
   if (!recorder.clock_doubt.empty()) all.push_back(recorder.clock_doubt);
   if (recorder.lost > 0)
     all.push_back(fmt::format("the recorder has dropped {} since the start", count_text(recorder.lost, "reading")));

@@ -31,8 +31,8 @@ inline constexpr auto kQuestionsFor = std::chrono::seconds(60);
 /// the last 4, or half of them if there are fewer than 8.
 std::size_t places_kept_for_this_machine(const AdmissionLimits& limits);
 
-/// Why `newcomer` may not connect besides those who are connected; nullopt if it may. Those with a place for
-/// questions do not count. Pure.
+/// The reason why `newcomer` cannot connect in addition to the connected ones; nullopt if it can. Those with a place
+/// for questions do not count. Pure.
 std::optional<std::string> admission_refusal(const AdmissionLimits& limits, std::span<const Peer> connected,
                                              const Peer& newcomer);
 

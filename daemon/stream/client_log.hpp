@@ -30,8 +30,8 @@ class ClientLog {
   }
 
   /// Logs how many lines were omitted, from time to time: call it repeatedly.
-  void tell_left_out() {
-    if (const std::uint64_t count = allowance_.tell_left_out(now_()); count > 0) {
+  void report_left_out() {
+    if (const std::uint64_t count = allowance_.take_left_out(now_()); count > 0) {
       spdlog::warn("{} about clients left out of this log: they came too fast", count_text(count, "line"));
     }
   }

@@ -23,14 +23,14 @@ struct ClientLimits {
 /// The time limit that a client has exceeded.
 enum class Overdue : std::uint8_t {
   kNeverSubscribed,  ///< connected, but did not subscribe
-  kStuck,            ///< reads nothing of what is being written to it
+  kStuck,            ///< reads nothing of the message being sent
   kIdle,             ///< subscribed to nothing, and requests nothing
-  kStayed,           ///< has a place for so long only
+  kStayed,           ///< its time in a place for questions is over
 };
 /// "it subscribed to nothing and requested nothing for 10 min": for the log and for the client.
 std::string reason_text(Overdue why, const ClientLimits& limits);
 
-/// What a client subscribes to.
+/// A client's subscription.
 struct Wanted {
   bool poses = false;
   bool sensors = false;
@@ -62,7 +62,7 @@ class ClientQueue {
   /// The client sent a request at `now`: it is not idle.
   void requested(MonoTime now) noexcept { asked_ = now; }
 
-  /// Behind the message in flight only `last` is sent, and nothing that is offered later.
+  /// After the message in flight only `last` is sent, and nothing that is offered later.
   void dismiss(SharedBytes last);
   bool is_dismissed() const noexcept { return dismissed_; }
   /// Returns true if all has been written to a dismissed client; then it should be disconnected.

@@ -16,9 +16,9 @@ namespace yuragi::daemon::stream {
 Result<wire::ControlReply, Failure> ask(const std::string& address, std::string_view client,
                                         const wire::Control& control, Nanoseconds timeout, const Secret& token = {});
 
-/// What came of asking the daemon at `address` to read its configuration again. `file`: as ReloadCommand::file. Fails
-/// as ask() does, and if the daemon is an older one that cannot do it. Waits as long as reading a file and making
-/// scenes may take. Thread-safe: yes.
+/// Asks the daemon at `address` to read its configuration again, and returns the result. `file`: as
+/// ReloadCommand::file. Fails as ask() does, and if the daemon is an older one that cannot do it. Waits as long as
+/// reading a file and making scenes may take. Thread-safe: yes.
 Result<wire::ReloadReport, Failure> ask_to_reload(const std::string& address, const std::string& file,
                                                   const Secret& token = {});
 

@@ -6,9 +6,8 @@
 
 namespace yuragi::daemon::stream {
 
-/// Which frames a client gets that wants at most so many a second. The rate holds in the long run also if it does
-/// not divide that of the frames; after a pause no more than one frame is made up for. Pure: time is a parameter.
-/// Thread-safe: no.
+/// Selects the frames of a client with a maximum rate. The rate is exact in the long run even if it does not divide
+/// that of the frames; after a pause at most one frame is sent in addition. Pure: time is a parameter. Thread-safe: no.
 class FramePace {
  public:
   /// `rate_hz`: above 0.

@@ -7,18 +7,18 @@
 
 namespace yuragi::daemon::stream {
 
-/// How many lines others may cause in the log: a token bucket. `burst` lines at once, and `per_s` in the long run; what
-/// is left out is counted. Pure: time is a parameter. Thread-safe: no. Realtime-safe: yes.
+/// Limits the lines that clients cause in the log: a token bucket. `burst` lines at once, and `per_s` in the long run;
+/// omitted lines are counted. Pure: time is a parameter. Thread-safe: no. Realtime-safe: yes.
 class LogAllowance {
  public:
   struct Settings {
     double burst = 60.0;  ///< lines
     double per_s = 1.0;   ///< lines per second
-    Nanoseconds told_every = std::chrono::seconds(10);
+    Nanoseconds report_every = std::chrono::seconds(10);
   };
 
   LogAllowance(const Settings& settings, MonoTime now)
-      : settings_(settings), tokens_(settings.burst), filled_(now), told_(now) {}
+      : settings_(settings), tokens_(settings.burst), filled_(now), reported_(now) {}
 
   /// Returns true if a line may be written at `now`; otherwise counts it.
   bool take(MonoTime now) noexcept {
@@ -32,10 +32,10 @@ class LogAllowance {
     return true;
   }
 
-  /// Returns how many lines were omitted since the last report; 0 if none, or if that was less than told_every ago.
-  std::uint64_t tell_left_out(MonoTime now) noexcept {
-    if (left_out_ == 0 || now - told_ < settings_.told_every) return 0;
-    told_ = now;
+  /// Returns how many lines were omitted since the last report; 0 if none, or if that was less than report_every ago.
+  std::uint64_t take_left_out(MonoTime now) noexcept {
+    if (left_out_ == 0 || now - reported_ < settings_.report_every) return 0;
+    reported_ = now;
     const std::uint64_t count = left_out_;
     left_out_ = 0;
     return count;
@@ -44,7 +44,7 @@ class LogAllowance {
  private:
   Settings settings_;
   double tokens_;
-  MonoTime filled_, told_;
+  MonoTime filled_, reported_;
   std::uint64_t left_out_ = 0;
 };
 

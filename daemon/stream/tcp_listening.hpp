@@ -7,7 +7,7 @@
 
 namespace yuragi::daemon::stream {
 
-// What servers of TCP share.
+// Common parts of TCP servers.
 
 /// Opens the listening socket at HOST:PORT. Throws FailureError (kUnavailable) with what to do.
 boost::asio::ip::tcp::acceptor open_acceptor(boost::asio::io_context& io, std::string_view listen);

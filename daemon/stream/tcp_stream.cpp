@@ -141,7 +141,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Disconnects the client if it has exceeded a time limit, which is returned.
   std::optional<Overdue> check(MonoTime now) {
-    offer_frame();  // the last one, if no other one replaces it
+    offer_frame();  // the last one, unless a newer one replaces it
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
     if (!overdue) return overdue;
     const std::string why = reason_text(*overdue, limits_);
@@ -149,7 +149,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       dismiss(why);
       return overdue;
     }
-    // It will not read what the kernel still holds for it: discard that, too.
+    // It will not read the data that the kernel still holds for it: discard that, too.
     error_code ignored;
     socket_.set_option(asio::socket_base::linger(true, 0), ignored);
     end(why);
@@ -165,7 +165,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
  private:
-  /// Does what an event is about. An exception ends this connection, and no other.
+  /// Handles an event. An exception ends only this connection.
   template <class Work>
   void go_on(Work&& work) {
     if (!contain("a stream connection", std::forward<Work>(work))) end(kOwnFault);
@@ -280,7 +280,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (is_open()) read_prefix();
   }
 
-  /// The reply comes later, unless the client has gone by then.
+  /// The reply is sent later, unless the client has disconnected by then.
   void take_reload(const wire::ReloadCommand& command) {
     feed_->settings.on_reload(command, is_trusted_, [weak = weak_from_this()](const wire::ControlReply& reply) {
       if (const auto self = weak.lock()) self->send_reply(reply);
@@ -481,7 +481,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
       if (overdue == Overdue::kNeverSubscribed || overdue == Overdue::kIdle) ++feed_->counts.idle;
     });
     forget_closed();
-    feed_->log->tell_left_out();
+    feed_->log->report_left_out();
     check_timer_.expires_after(feed_->settings.check_every);
     check_timer_.async_wait([self = shared_from_this()](const error_code&) {
       if (!self->closed_) self->check_clients();

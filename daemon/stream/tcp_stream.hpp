@@ -55,7 +55,7 @@ struct TcpStreamSettings {
 
 /// How many clients have been turned away since the start.
 struct ClientCounts {
-  std::uint64_t refused = 0;  ///< at once: there was no place for them
+  std::uint64_t refused = 0;  ///< at once, because all places were taken
   std::uint64_t stuck = 0;    ///< disconnected because they stopped reading
   std::uint64_t idle = 0;     ///< disconnected because they subscribed to nothing, or not at all
 };

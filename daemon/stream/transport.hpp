@@ -32,14 +32,14 @@ class Transport {
   virtual void publish_scenes(SharedBytes scenes) = 0;
 
   /// The newest state of the sensors (an encoded wire::Sensors): one message for clients of this machine, and one for
-  /// those of others, which get less. `elsewhere` may be null while has_untrusted_clients() is false; a client
-  /// that would need it waits for the next one.
+  /// those of others, which get less. `elsewhere` can be null while has_untrusted_clients() is false; a client that
+  /// would need it waits for the next one.
   virtual void publish_sensors(SharedBytes here, SharedBytes elsewhere) = 0;
 
   /// Returns the number of clients that are connected.
   virtual std::size_t client_count() const = 0;
-  /// Returns true if any of them has not the rights of this machine: it is on another one, or shows no token if one is
-  /// required.
+  /// Returns true if any client does not have the rights of this machine: it is on another one, or sends no token if
+  /// one is required.
   virtual bool has_untrusted_clients() const = 0;
 
   /// Closes all connections and accepts no more. A second call does nothing.

@@ -164,7 +164,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::request_parser<http::string_body>> parser_;
   http::response<http::string_body> message_;
   bool is_head_ = false;
-  bool is_last_ = false;  ///< the connection ends behind this answer
+  bool is_last_ = false;  ///< the connection is closed after this reply
   bool has_ended_ = false;
 };
 

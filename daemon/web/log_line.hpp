@@ -13,7 +13,7 @@ struct LogLine {
   std::string text;
 };
 
-/// Gives the last lines of a log, at most so many, oldest first.
+/// Gives the last lines of a log, at most this many, oldest first.
 using LogTail = std::function<std::vector<LogLine>(std::size_t most)>;
 
 }  // namespace yuragi::daemon::web

@@ -24,7 +24,7 @@ constexpr std::size_t kMaxAddressCharacters = 64;
 constexpr std::int64_t kMaxTime_s = 100'000'000'000;
 
 bool is_too_old(const PairedBrowser& browser, double utc_s) {
-  // One that seems to be of the future was paired before the clock was set.
+  // A date in the future means that the clock was set after the pairing.
   return utc_s - static_cast<double>(browser.since_utc_s) > static_cast<double>(Pairings::kSession_s);
 }
 

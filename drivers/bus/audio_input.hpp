@@ -26,7 +26,7 @@ struct AudioChoice {
   std::string device{};      ///< a part of the name, in any case; empty: the default input
   std::string host_api{};    ///< likewise; empty: any
   std::size_t channels = 1;  ///< 1 to kAudioMaxChannels
-  double rate_hz = 0.0;      ///< 0: what the device prefers
+  double rate_hz = 0.0;      ///< 0: the device's preferred rate
 };
 
 inline constexpr std::size_t kAudioMaxChannels = 4;
@@ -35,7 +35,7 @@ inline constexpr std::size_t kAudioBlockFrames = 128;
 /// A block of samples, as the sound system delivered it.
 struct AudioBlock {
   std::int64_t end_mono_ns = 0;   ///< when its last frame was at the microphone, by the sound system's time stamp
-  std::uint64_t end_frame = 0;    ///< frames since the stream began, lost ones included
+  std::uint64_t end_frame = 0;    ///< frames since the stream began, including lost ones
   std::uint32_t lost_frames = 0;  ///< just before it
   std::uint32_t frames = 0;
   std::array<float, kAudioBlockFrames * kAudioMaxChannels> samples{};  ///< frame after frame
@@ -49,14 +49,15 @@ class AudioInput {
   /// The devices that were there at the first call: PortAudio's list is frozen from then on.
   virtual Result<std::vector<AudioDevice>, Failure> list() = 0;
 
-  /// Opens and starts; what was opened. `now` is the clock, called on the sound system's thread: realtime-safe. The
-  /// failure's text: what is missing and what there is instead.
+  /// Opens and starts; returns the opened device. `now` is the clock, called on the sound system's thread:
+  /// realtime-safe. The failure's text: what is missing and what there is instead.
   virtual Result<AudioDevice, Failure> open(const AudioChoice& choice, std::function<MonoTime()> now) = 0;
 
-  /// The next piece; false: none has come yet.
+  /// Takes the next piece. Returns false if there is none yet.
   virtual bool take(AudioBlock& block) = 0;
 
-  /// False: the stream has ended by itself. True is no proof: the stream of a device that is gone may never report it.
+  /// Returns false if the stream has ended by itself. True is no proof: the stream of a disconnected device may never
+  /// report it.
   virtual bool is_running() = 0;
 };
 

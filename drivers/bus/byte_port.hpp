@@ -35,7 +35,7 @@ inline constexpr std::array<int, 12> kBytePortBauds = {300,   600,   1200,  2400
 struct BytePortAddress {
   BytePortKind kind = BytePortKind::kSerial;
 
-  /// Serial: best by its stable name under /dev/serial/by-id. File: its path. WebSocket: what is asked for, "/stream".
+  /// Serial: best by its stable name under /dev/serial/by-id. File: its path. WebSocket: the requested path, "/stream".
   /// CAN: the interface's name.
   std::string path = {};
   int baud = 9600;  ///< one of kBytePortBauds
@@ -47,8 +47,8 @@ struct BytePortAddress {
   std::string host = {};
   std::uint16_t port = 10110;
   std::string senders = {};  ///< UDP: take datagrams of these addresses and nets only (SenderFilter); empty: of any
-  /// UDP: other programs that ask for the same (SO_REUSEADDR) may listen at the port, too. All of them get what is
-  /// broadcast; what is sent to this machine alone only the last one that came gets.
+  /// UDP: other programs that also set this (SO_REUSEADDR) can listen at the port, too. All of them receive broadcasts;
+  /// datagrams to this machine alone are received only by the program that bound last.
   bool is_port_shared = false;
 
   /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, without end,
@@ -98,8 +98,8 @@ struct ByteArrival {
   std::uint32_t overrun = 0;       ///< UDP: how many datagrams before this one the kernel dropped for want of room
 };
 
-/// A datagram that is longer than what it is read into loses its end; this is enough for each. A WebSocket's message
-/// that is longer ends the connection.
+/// A datagram that is longer than its buffer loses its end; this is enough for any. A WebSocket's message that is
+/// longer ends the connection.
 inline constexpr std::size_t kMaxDatagram = 65536;
 
 /// A port that can be closed and opened again. Carries bytes without interpreting them. A test may substitute another.
@@ -114,15 +114,15 @@ class BytePort {
   virtual Result<void, Failure> open() = 0;
   virtual void close() noexcept = 0;
 
-  /// The next bytes, waiting for at most `timeout`; none: what is there already. kLost while it is not open.
+  /// The next bytes, waiting for at most `timeout`; 0: without waiting. kLost while it is not open.
   virtual ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
 
-  /// Sends all of it (serial, TCP; WebSocket: as one message of text). False: the port is lost, takes nothing for a
-  /// second, or cannot be written to.
+  /// Sends all of it (serial, TCP; WebSocket: as one message of text). Returns false if the port is lost, takes no byte
+  /// for a second, or cannot be written to.
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
 
-  /// Ends a read(), write() or open() that waits and makes all later work end at once. What a port takes without a wait
-  /// can still be written: a last word to the device.
+  /// Ends a read(), write() or open() that waits and makes all later work end at once. Data that the port takes without
+  /// waiting can still be written: a last message to the device.
   virtual void interrupt() noexcept = 0;
 };
 

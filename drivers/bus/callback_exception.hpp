@@ -21,7 +21,7 @@ class CallbackException {
     }
   }
 
-  /// Throws what was kept, once.
+  /// Throws the kept exception, once.
   void rethrow() {
     if (kept_) std::rethrow_exception(std::exchange(kept_, nullptr));
   }

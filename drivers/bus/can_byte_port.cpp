@@ -87,7 +87,7 @@ class CanBytePort final : public DescriptorPort {
     return arrival;
   }
 
-  /// Always false: Yuragi sends nothing on a bus that it is not part of.
+  /// Always returns false: Yuragi sends nothing on a bus to which it only listens.
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
 
  protected:

@@ -9,11 +9,11 @@ namespace yuragi::drivers::bus {
 /// A CAN interface that this machine has.
 struct CanInterfaceInfo {
   std::string name;     ///< "can0"
-  std::string trouble;  ///< why nothing can be received there; empty: it can
+  std::string trouble;  ///< the reason why nothing can be received there; empty: it can
   std::string remedy;   ///< the command to type
 };
 
-/// Where the kernel lists network interfaces; a test puts a folder of its own in its place.
+/// The kernel's list of network interfaces; tests use a folder of their own.
 inline constexpr const char* kNetworkInterfaces = "/sys/class/net";
 
 /// The CAN interfaces, by hardware or virtual, in the order of their names. Opens none of them. Thread-safe: yes.

@@ -26,10 +26,10 @@ struct DatagramAnswer {
   bool operator==(const DatagramAnswer&) const = default;
 };
 
-/// Asks three times within the first three seconds, as datagrams get lost, from a port of its own, and takes what comes
-/// to that port: each answer once, at most 1000 of them. What is sent leaves no local network (a time to live of 1),
-/// unless it is to one address. Waits for the whole duration. The failure's text is the reason why no request could be
-/// sent.
+/// Asks three times within the first three seconds, because datagrams get lost, from a port of its own, and takes the
+/// replies to that port: each once, at most 1000 of them. Requests do not leave the local network (a time to live of
+/// 1), unless they are to one address. Waits for the whole duration. The failure's text is the reason why no request
+/// could be sent.
 Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry& inquiry);
 
 }  // namespace yuragi::drivers::bus

@@ -7,8 +7,8 @@
 
 namespace yuragi::drivers::bus {
 
-/// What byte ports with a file descriptor have in common: reading, writing and being interrupted. What a kind of port
-/// adds is how to open it.
+/// The common part of byte ports with a file descriptor: reading, writing and being interrupted. A kind of port adds
+/// how to open it.
 class DescriptorPort : public BytePort {
  public:
   explicit DescriptorPort(const BytePortAddress& address) : address_(address) {}
@@ -29,7 +29,7 @@ class DescriptorPort : public BytePort {
   Interruption interruption_;
 };
 
-// One kind each, in a file of its own.
+// Each makes one kind of port, in a separate file.
 std::unique_ptr<BytePort> make_serial_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_tcp_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_udp_port(const BytePortAddress& address);

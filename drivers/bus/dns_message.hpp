@@ -8,8 +8,8 @@
 namespace yuragi::drivers::bus {
 
 // Messages of DNS-based service discovery over multicast DNS (S. Cheshire and M. Krochmal, RFC 6762 and RFC 6763,
-// 2013), made and taken apart by the resolver of the C library. Who asks from another port than 5353 is answered there
-// alone (RFC 6762, sections 5.1 and 6.7), so that no service of this machine's has to be asked.
+// 2013), made and taken apart by the resolver of the C library. A request from a port other than 5353 is answered to
+// that port only (RFC 6762, sections 5.1 and 6.7), so that no service of this machine is needed.
 
 inline constexpr std::uint16_t kMulticastDnsPort = 5353;
 inline constexpr const char* kMulticastDnsGroup = "224.0.0.251";

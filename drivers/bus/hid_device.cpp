@@ -31,7 +31,7 @@ namespace {
 
 using HidSteadyClock = std::chrono::steady_clock;
 constexpr Nanoseconds kSlice = std::chrono::milliseconds(50);      // how often a read checks for interruption
-constexpr Nanoseconds kSpinGuard = std::chrono::milliseconds(10);  // where the system reports "ready" and has nothing
+constexpr Nanoseconds kSpinGuard = std::chrono::milliseconds(10);  // when the system reports "ready" without data
 
 /// hidapi's one global state, set up once and taken down at the end of the process.
 class HidLibrary {
@@ -193,7 +193,7 @@ class HidapiDevice final : public HidDevice {
     buffer[0] = id;
     const int size = hid_get_input_report(device_.get(), buffer.data(), buffer.size());
     if (size > 0) return {HidStatus::kReport, std::min(static_cast<std::size_t>(size), buffer.size())};
-    // It refused, or it is gone: then the node has hung up.
+    // It refused, or is disconnected: then the node has hung up.
     std::array<std::uint8_t, 64> spare{};
     const bool is_lost = hid_read_timeout(device_.get(), spare.data(), spare.size(), 0) < 0;
     return {is_lost ? HidStatus::kLost : HidStatus::kSilence};

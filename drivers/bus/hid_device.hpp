@@ -48,14 +48,14 @@ struct HidListing {
   std::string trouble;  ///< why it cannot be opened; empty: it can
 };
 
-/// What to do about a device node without permission.
+/// Advice for a device node without permission.
 extern const char* const kHidPermissionRemedy;
 
 enum class HidStatus : std::uint8_t {
   kReport,
-  kSilence,      ///< nothing until the time-out; of a requested report, no reply
+  kSilence,      ///< no report until the timeout; for a requested report, no reply
   kInterrupted,  ///< interrupt() was called
-  kLost,         ///< the device is gone, or cannot be used any more
+  kLost,         ///< the device is disconnected, or cannot be used any more
 };
 
 struct HidArrival {
@@ -79,8 +79,8 @@ class HidDevice {
   /// The next input report, waiting for at most `timeout`; numbered reports begin with their number.
   virtual HidArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
 
-  /// Sends an output report: its number (0 if the device has none), then its bytes. False: it failed. Waits for at
-  /// most 5 s, the kernel's own fixed limit.
+  /// Sends an output report: its number (0 if the device has none), then its bytes. Returns false on failure. Waits for
+  /// at most 5 s, the kernel's own fixed limit.
   virtual bool write(std::span<const std::uint8_t> report) = 0;
 
   /// Requests input report `id`, which begins with that number. kSilence if the device refuses or does not reply

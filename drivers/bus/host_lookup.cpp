@@ -21,7 +21,7 @@ Failure cannot_look_up(const std::string& host, const std::exception& error) {
   return {"cannot look up \"" + host + "\" (" + error.what() + ")"};
 }
 
-/// The system's look-up. Blocks. Never throws: it is what its thread does.
+/// The system's look-up. Blocks. Never throws: it is the whole work of its thread.
 LookupResult resolve_host(const std::string& host, std::uint16_t port) try {
   boost::asio::io_context context;
   boost::asio::ip::tcp::resolver resolver(context);
@@ -31,7 +31,7 @@ LookupResult resolve_host(const std::string& host, std::uint16_t port) try {
   if (!endpoints.empty()) return endpoints;
   return Failure{"cannot find the host \"" + host + "\" (" + error.message() +
                  "): check its name and this machine's name server, or use an IP address"};
-} catch (const std::exception& error) {  // no descriptor for the context, say
+} catch (const std::exception& error) {  // for example, no descriptor for the context
   return cannot_look_up(host, error);
 }
 

@@ -24,7 +24,8 @@ class HostLookup {
   /// progress is continued.
   Result<std::vector<boost::asio::ip::tcp::endpoint>, Failure> find(Nanoseconds timeout);
 
-  /// Is a look-up in progress? After a failed find(): it took too long, and find() can wait for it again.
+  /// Returns true if a look-up is in progress. After a failed find(): it took too long, and find() can wait for it
+  /// again.
   bool is_under_way() const;
 
   /// Ends a waiting find(), and all later ones.

@@ -6,7 +6,7 @@
 
 namespace yuragi::drivers::bus {
 
-/// What came of waiting for a descriptor.
+/// The result of waiting for a descriptor.
 enum class WaitEnd : std::uint8_t {
   kReady,        ///< it can be read (or written), or has an error
   kTimeout,      ///< not within the time

@@ -20,7 +20,7 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 /// From the first byte of a message to its last. While libmodbus waits for the rest nothing can interrupt it, so that
-/// this is also the longest that shutting down may wait for it. At 1200 bit/s there is time for 50 bytes.
+/// this is also the maximum wait at shutdown. At 1200 bit/s there is time for 50 bytes.
 constexpr Nanoseconds kMaxMessage = std::chrono::milliseconds(500);
 
 struct FreeModbus {
@@ -128,8 +128,8 @@ class LibmodbusConnection final : public ModbusConnection {
     const int size = modbus_receive_confirmation(context_.get(), buffer.data());
     if (size > 0) return {Status::kMessage, static_cast<std::size_t>(size)};
     if (size == 0 || errno == EMBBADCRC) {
-      // A whole message of another slave stands for itself. One that is damaged, perhaps by a stray byte in front, is
-      // not cut where it should be: the decoder shall see all that the line brings.
+      // A whole message of another slave is passed on alone. A damaged one, perhaps with a stray byte in front, may be
+      // cut at the wrong place: so the decoder gets all received bytes.
       const std::size_t framed = std::min(refused_length(buffer), buffer.size());
       const bool is_whole = decode::modbus::modbus_crc(buffer.first(framed)) == 0;
       const Nanoseconds quiet = std::max(patience_.byte_timeout, frame_gap(line_));
@@ -151,12 +151,12 @@ class LibmodbusConnection final : public ModbusConnection {
                                 static_cast<std::uint32_t>(time.tv_nsec / 1000));
   }
 
-  /// Is there something to read, or news of the line's end, within `timeout`?
+  /// Returns true if there is something to read, or the line has ended, within `timeout`.
   bool wait_for_bytes(Nanoseconds timeout, const Interruption& interruption) const {
     return interruption.wait(modbus_get_socket(context_.get()), WaitFor::kReadable, timeout) == WaitEnd::kReady;
   }
 
-  /// Reads until nothing comes for `quiet`, or until `deadline`; returns how much of it is in the buffer.
+  /// Reads until no byte arrives for `quiet`, or until `deadline`; returns the number of bytes in the buffer.
   std::size_t read_until_quiet(std::span<std::uint8_t> buffer, Nanoseconds quiet, SteadyClock::time_point deadline,
                                const Interruption& interruption) const {
     std::size_t size = 0;

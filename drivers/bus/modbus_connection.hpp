@@ -44,8 +44,8 @@ Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 /// The result of waiting for a reply.
 enum class Status : std::uint8_t {
   kMessage,      ///< a message, not decoded yet
-  kSilence,      ///< nothing until the response time-out
-  kCutOff,       ///< the beginning of a message, and then nothing until the response time-out
+  kSilence,      ///< no byte until the response timeout
+  kCutOff,       ///< the beginning of a message, then no byte until the response timeout
   kGarbled,      ///< bytes that are not a message; message boundaries are lost
   kInterrupted,  ///< the interruption was set
   kLost,         ///< the connection is gone
@@ -68,7 +68,7 @@ class ModbusConnection {
   /// looks up a host name).
   virtual Result<void, Failure> open(const Interruption& interruption) = 0;
   virtual bool is_open() const noexcept = 0;
-  /// Errors while closing are ignored: the descriptor is gone.
+  /// Errors while closing are ignored: the descriptor is closed in any case.
   virtual void close() noexcept = 0;
 
   /// Reads from the line until it has been quiet for the byte time-out, or chattering for the response time-out,
@@ -76,8 +76,8 @@ class ModbusConnection {
   virtual std::size_t settle(std::span<std::uint8_t, decode::modbus::kModbusMaxMessage> buffer,
                              const ModbusPatience& patience, const Interruption& interruption) = 0;
 
-  /// Sends a request and starts its response time-out. On a serial line, unrequested bytes are discarded first. False:
-  /// the connection is gone.
+  /// Sends a request and starts its response time-out. On a serial line, unrequested bytes are discarded first. Returns
+  /// false if the connection is lost.
   virtual bool send(const decode::modbus::Request& request, const ModbusPatience& patience) = 0;
 
   /// The next message since, waiting until the response time-out that send() began. Can be called again after a message

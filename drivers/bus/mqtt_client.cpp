@@ -27,7 +27,7 @@ using MqttClock = std::chrono::steady_clock;
 
 constexpr int kMaxPayload = 65'536;
 constexpr int kAtMostOnce = 0;
-/// The library wants to look at the clock at least so often, to keep the connection alive.
+/// The library must check the clock at least this often, to keep the connection alive.
 constexpr Nanoseconds kHousekeeping = std::chrono::milliseconds(500);
 constexpr const char* kTrustedBySystem = "/etc/ssl/certs";
 
@@ -72,7 +72,7 @@ class MosquittoClient final : public MqttClient {
     if (!endpoints) return Failure{describe(wanted_) + ": " + endpoints.error().message};
 
     // The addresses of a name are tried in turn, until one replies. With TLS the name itself must be given,
-    // since the broker's certificate is for that.
+    // because the broker's certificate is for that.
     const std::string address = (*endpoints)[turn_ % endpoints->size()].address().to_string();
     auto connected = connect_to(wanted_.uses_tls ? wanted_.host : address);
     if (!connected) {
@@ -131,7 +131,7 @@ class MosquittoClient final : public MqttClient {
   }
 
   int begin_to_connect(const std::string& host) {
-    client_.reset(mosquitto_new(nullptr, true, this));  // a random client id: there may be two of this program
+    client_.reset(mosquitto_new(nullptr, true, this));  // a random client id: this program can run twice
     if (!client_) return errno == ENOMEM ? MOSQ_ERR_NOMEM : MOSQ_ERR_INVAL;
     mosquitto_connect_callback_set(client_.get(), &on_connect);
     mosquitto_subscribe_callback_set(client_.get(), &on_subscribe);

@@ -35,7 +35,7 @@ enum class MqttStatus : std::uint8_t {
   kMessage,
   kSilence,      ///< none until the time-out
   kInterrupted,  ///< interrupt() was called
-  kLost,         ///< the connection is gone; trouble() is the reason
+  kLost,         ///< the connection is lost; trouble() is the reason
 };
 
 /// A connection to an MQTT broker, which can be closed and opened again for as long as this lives. A test may put
@@ -67,7 +67,7 @@ class MqttClient {
 /// The real one, by libmosquitto. Throws std::runtime_error if there is no memory or descriptor left for it.
 std::unique_ptr<MqttClient> make_mqtt_client(const MqttSubscription& subscription);
 
-/// Is it a valid topic filter?
+/// Returns true for a valid topic filter.
 bool is_mqtt_filter(const std::string& topic);
 
 /// Does `topic` match `filter`?

@@ -102,7 +102,7 @@ LibloMessage new_message() {
   return message;
 }
 
-/// Appends the message. False: it is invalid.
+/// Appends the message. Returns false if it is invalid.
 bool take_message(OscBytes bytes, std::optional<UtcTime> meant_for, std::vector<OscMessage>& messages) {
   // liblo converts the byte order in place.
   std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
@@ -118,8 +118,8 @@ bool take_message(OscBytes bytes, std::optional<UtcTime> meant_for, std::vector<
   return true;
 }
 
-/// Appends what is in it: a message, or a bundle `depth` bundles deep, in bundles for `meant_for`. False: any of it is
-/// neither.
+/// Appends the content: a message, or a bundle `depth` bundles deep, in bundles for `meant_for`. Returns false if any
+/// part is neither.
 bool take_element(OscBytes bytes, int depth, std::optional<UtcTime> meant_for, std::vector<OscMessage>& messages) {
   const bool is_bundle =
       bytes.size() >= kBundleMark.size() && std::equal(kBundleMark.begin(), kBundleMark.end(), bytes.begin());

@@ -33,7 +33,7 @@ std::vector<std::uint8_t> encode_osc(const std::string& address, const std::stri
 std::vector<std::uint8_t> encode_osc_bundle(std::span<const std::vector<std::uint8_t>> messages,
                                             std::optional<UtcTime> meant_for);
 
-/// Is `address` one of those that `pattern` stands for? OSC's own patterns: ? * [a-z] {this,that}.
+/// Returns true if `address` matches `pattern`. OSC's own patterns: ? * [a-z] {this,that}.
 bool osc_address_matches(const std::string& address, const std::string& pattern);
 
 }  // namespace yuragi::drivers::bus

@@ -15,7 +15,7 @@
 namespace yuragi::drivers::bus {
 namespace {
 
-/// A second and more at 48 kHz: what the worker may be late.
+/// More than a second at 48 kHz: the possible delay of the worker.
 constexpr std::size_t kWaitingBlocks = 512;
 constexpr double kBelievableLatency_s = 0.5;
 constexpr double kLatencyWanted_s = 0.1;
@@ -65,7 +65,7 @@ class PortaudioInput final : public AudioInput {
     const PaDeviceInfo* info = Pa_GetDeviceInfo(*index);
     const PaStreamParameters input = {*index, static_cast<int>(channels_), paFloat32,
                                       std::max(kLatencyWanted_s, info->defaultHighInputLatency), nullptr};
-    // Neither clipped nor dithered: what clips is to be seen, and noise is not to be added.
+    // Neither clipped nor dithered: clipping must be visible, and no noise must be added.
     PaError error = Pa_OpenStream(&stream_, &input, nullptr, rate_hz_, paFramesPerBufferUnspecified,
                                   paClipOff | paDitherOff, &PortaudioInput::call_back, this);
     if (error == paNoError) error = Pa_StartStream(stream_);
@@ -109,7 +109,7 @@ class PortaudioInput final : public AudioInput {
             .is_default = index == Pa_GetDefaultInputDevice()};
   }
 
-  /// The device that is meant: of several the first.
+  /// The configured device; if there are several, the first.
   static Result<PaDeviceIndex, Failure> find(const AudioChoice& choice) {
     std::string there;
     for (PaDeviceIndex index = 0; index < Pa_GetDeviceCount(); ++index) {
@@ -138,8 +138,8 @@ class PortaudioInput final : public AudioInput {
 
   void hand_over(const float* input, std::size_t frames, const PaStreamCallbackTimeInfo& time, bool overflowed) {
     if (input == nullptr) return;
-    // PortAudio's own clock is not ours: what is taken from it is how long ago the first frame was at the converter.
-    // Some sound systems report nothing, or nonsense; then the buffer is taken to have just become full.
+    // PortAudio's own clock is not ours: it is only used for the age of the first frame at the converter. Some sound
+    // systems report nothing, or nonsense; then the buffer is taken to have just become full.
     const double duration_s = static_cast<double>(frames) / rate_hz_;
     double age_s = time.currentTime - time.inputBufferAdcTime;
     if (!(time.inputBufferAdcTime > 0.0) || !(age_s >= duration_s) || age_s > duration_s + kBelievableLatency_s) {

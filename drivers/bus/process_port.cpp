@@ -63,7 +63,7 @@ class ProcessPort final : public BytePort {
     std::erase_if(killed_, [](platform::ChildProcess& process) { return process.end().has_value(); });
     if (!process_) return;
     process_->signal(SIGKILL);
-    // It is gone within a moment, unless a driver of the system holds it: then it is checked again later.
+    // A killed process ends within a moment, unless a system driver holds it: then it is checked again later.
     if (!process_->end(kKillTakes_ms)) killed_.push_back(std::move(*process_));
     process_.reset();
   }

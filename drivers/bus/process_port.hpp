@@ -8,8 +8,8 @@
 
 namespace yuragi::drivers::bus {
 
-/// A program of ours whose standard output is the port: what wraps a library that can hang must be a process, since a
-/// thread that spins cannot be ended. `command`: the program's path and its arguments.
+/// A program of ours whose standard output is the port: a library that can hang must run in a process, because a thread
+/// that spins cannot be ended. `command`: the program's path and its arguments.
 ///
 /// open() starts it. close() kills it in any state, and leaves no zombie. It dies with the thread that opened it,
 /// should that end without close(). Standard input is empty; standard error is the daemon's own. read() returns kLost

@@ -35,10 +35,10 @@ class SenderFilter {
 /// Returns true if `wide` takes every sender that `narrow` names; false if one of them is no list.
 bool senders_cover(const std::string& wide, const std::string& narrow);
 
-/// IPv4 addresses that came through an IPv6 socket look like it; people write them as they are.
+/// Converts an IPv4 address that was received on an IPv6 socket to its usual form.
 boost::asio::ip::address plain_address(const boost::asio::ip::address& address);
 
-/// Can only programs of this machine send to it? Fails if it is no address.
+/// Returns true if only programs of this machine can send to it. Fails if it is not an address.
 Result<bool, Failure> is_loopback(const std::string& address);
 
 }  // namespace yuragi::drivers::bus

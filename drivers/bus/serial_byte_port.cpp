@@ -104,7 +104,7 @@ class SerialBytePort final : public DescriptorPort {
     using FlowControl = serial_port_base::flow_control;
     if (port_.set_option(FlowControl(FlowControl::none), error)) return error;
 
-    // What has been waiting there is of no known age.
+    // The age of bytes that were already waiting is unknown.
     if (tcflush(handle, TCIFLUSH) != 0) return {errno, boost::system::system_category()};
     return {};
   }

@@ -14,7 +14,7 @@ struct SerialPortInfo {
   std::string remedy;   ///< what to do about that
 };
 
-/// Where the system lists serial ports; a test puts folders of its own in their place.
+/// The system's lists of serial ports; tests use folders of their own.
 struct SerialPortPlaces {
   std::filesystem::path devices = "/dev";
   std::filesystem::path classes = "/sys/class/tty";
@@ -25,8 +25,8 @@ struct SerialPortPlaces {
 /// Thread-safe: yes.
 std::vector<SerialPortInfo> find_serial_ports(const SerialPortPlaces& places = {});
 
-/// The identity of a serial port for comparison with others: "serial port " and the device file that its name, which
-/// may be a link, leads to; the name itself while it leads nowhere.
+/// The identity of a serial port for comparison with others: "serial port " and the device file to which its name,
+/// which can be a link, leads; the name itself if it leads nowhere.
 std::string serial_device_of(const std::filesystem::path& name);
 
 /// Why this process cannot open `node` for reading and writing, and what to do about it; both empty: it can. `node` is

@@ -125,10 +125,10 @@ class UdpBytePort final : public DescriptorPort {
     close_on_exec(socket_.native_handle());
     if (socket_.non_blocking(true, error)) return error;
     const int yes = 1;
-    setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &yes, sizeof yes);  // without it nothing is counted
+    setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &yes, sizeof yes);  // without it no drops are counted
     dropped_ = 0;
-    // Not shared unless that is asked for: the last one to bind would get all that is sent to this machine alone, and
-    // the others nothing, without an error.
+    // Shared only if requested: otherwise the last program to bind would receive all datagrams to this machine alone,
+    // and the others none, without an error.
     const bool is_shared = local.is_multicast() || address().is_port_shared;
     if (is_shared && socket_.set_option(udp::socket::reuse_address(true), error)) return error;
     if (socket_.bind(endpoint, error)) return error;

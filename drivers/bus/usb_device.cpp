@@ -27,7 +27,7 @@ struct FreeDeviceList {
 };
 using DeviceList = std::unique_ptr<libusb_device*, FreeDeviceList>;
 
-/// A transfer and what it needs for as long as libusb knows of it.
+/// A transfer and its data, kept for as long as libusb uses it.
 struct PendingTransfer {
   explicit PendingTransfer(std::size_t size) : transfer(libusb_alloc_transfer(0)), buffer(size) {
     if (transfer == nullptr) throw std::bad_alloc();
@@ -79,7 +79,7 @@ std::string port_of(libusb_device* device) {
   return fmt::format("{}-{}", bus, fmt::join(ports.begin(), ports.begin() + depth, "."));
 }
 
-/// What the kernel has read of the device when it was plugged in; no permission is needed for it.
+/// An attribute that the kernel read from the device when it was plugged in; needs no permission.
 std::string attribute_of(const std::string& port, const char* name) {
   std::ifstream file("/sys/bus/usb/devices/" + port + "/" + name);
   std::string text;

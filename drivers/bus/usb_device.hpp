@@ -46,7 +46,7 @@ enum class UsbStatus : std::uint8_t {
   kStalled,      ///< the device refuses this request
   kOverflow,     ///< the device sent more than was requested
   kInterrupted,  ///< interrupt() was called
-  kGone,         ///< the device, or the connection to it, is gone
+  kGone,         ///< the device, or the connection to it, is lost
 };
 
 struct UsbTransfer {
@@ -65,7 +65,7 @@ class UsbDevice {
   /// Those of its kinds that are plugged in, in the order of their ports.
   virtual Result<std::vector<PluggedUsbDevice>, Failure> plugged() = 0;
 
-  /// Has a device of its kinds been plugged in since the last call? Does not wait.
+  /// Returns true if a device of its kinds was plugged in since the last call. Does not wait.
   virtual bool take_arrival() = 0;
 
   /// Opens one of those and claims its first interface. The failure's text: why, and what to do.

@@ -47,7 +47,7 @@ void async_teardown(beast::role_type /*role*/, WebSocketSocket& socket, Handler&
   asio::post(socket.get_executor(), beast::bind_front_handler(std::forward<Handler>(handler), error_code()));
 }
 
-/// One connection and what is under way on it, which also its handlers own. Messages are never compressed.
+/// A connection and its pending operations, which its handlers own, too. Messages are never compressed.
 struct WebSocketConnection {
   explicit WebSocketConnection(asio::io_context& context) : stream(context) {}
 
@@ -177,8 +177,8 @@ class WebSocketPort final : public BytePort {
     stream.text(true);
   }
 
-  /// Lets the connection do what it can until something has happened, the time is over, or the wait is interrupted.
-  /// From then on: what it can do without a wait.
+  /// Runs the connection until the condition is true, the time is over, or the wait is interrupted; after that only
+  /// without waiting.
   template <class Condition>
   void run(Nanoseconds timeout, Condition&& has_happened) {
     const auto end = std::chrono::steady_clock::now() + timeout;

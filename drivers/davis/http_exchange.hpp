@@ -22,7 +22,7 @@ class HttpExchange {
   HttpExchange(std::string host, std::unique_ptr<bus::BytePort> port);
   ~HttpExchange();
 
-  /// Gives up what was under way, connects, and sends "GET `target`". Blocks as the port's open() does.
+  /// Abandons a pending request, connects, and sends "GET `target`". Blocks as the port's open() does.
   Result<void, Failure> begin(const std::string& target);
   bool is_under_way() const noexcept { return parser_ != nullptr; }
 

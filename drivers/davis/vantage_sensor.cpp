@@ -19,9 +19,9 @@ constexpr std::uint8_t kAcknowledged = 0x06;
 constexpr Nanoseconds kWakePatience = 1200ms;
 constexpr int kWakeTries = 3;
 constexpr Nanoseconds kReplyPatience = 2s;
-/// Between a console's reply and the next request: a WeatherLinkIP loses what comes at once (weewx).
+/// Between a console's reply and the next request: a WeatherLinkIP loses a request that follows immediately (weewx).
 constexpr Nanoseconds kRest = 100ms;
-/// A read returns at least so often, so that time-outs are checked.
+/// A read returns at least this often, so that timeouts are checked.
 constexpr Nanoseconds kMaxRead = 200ms;
 constexpr int kForgottenBlocks = 16;
 
@@ -35,7 +35,7 @@ constexpr Nanoseconds kPacketCut = 1s;
 constexpr int kVainRequests = 4;
 /// Without wind in the packets for this time, the station has a problem.
 constexpr Nanoseconds kWindPatience = 10s;
-/// What a console takes to end its packets.
+/// The time that a console needs to end its packets.
 constexpr Nanoseconds kFarewell = 100ms;
 
 decode::ByteSpan bytes_of(std::string_view text) {
@@ -97,7 +97,7 @@ Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor
       return now.mono;
     case bus::ByteStatus::kLost:
     case bus::ByteStatus::kEnd:
-      phase_ = Phase::kWake;  // the console is gone: close() need not end its packets
+      phase_ = Phase::kWake;  // the console is disconnected: close() need not end its packets
       return Failure{where_ + " is gone: it is reopened when it is back; check its plug, its power and the network"};
     case bus::ByteStatus::kBytes:
       done = take(decode::ByteSpan(buffer_).first(arrival.size), now, sink);
@@ -119,7 +119,7 @@ std::string VantageSensor::request() const {
   return fmt::format("{} {}\n", asks_for_loop2_ ? "LPS 2" : "LOOP", kPacketsAsked);
 }
 
-/// False: the port is lost.
+/// Returns false if the port is lost.
 bool VantageSensor::send_request(MonoTime now, sensor::Sink& sink) {
   drop_old_input();
   const std::string request = this->request();
@@ -131,7 +131,7 @@ bool VantageSensor::send_request(MonoTime now, sensor::Sink& sink) {
   return true;
 }
 
-/// What a console had sent before is no reply.
+/// Earlier data of a console is not a reply.
 void VantageSensor::drop_old_input() {
   assembler_.cut();
   for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == bus::ByteStatus::kBytes; ++i) {

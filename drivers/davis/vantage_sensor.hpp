@@ -29,8 +29,8 @@ struct VantageSettings {
 /// The values of kDavisDriver's parameters. Throws std::runtime_error if they cannot work together.
 VantageSettings vantage_settings_of(const ParameterValues& values);
 
-/// A console of a Davis station. It is woken, asked for its rain collector and for so many packets, and before the last
-/// of them has come woken and asked again, so that one that is left alone soon falls silent, which spares its battery.
+/// A console of a Davis station. It is woken, and asked for its rain collector and for a number of packets; before the
+/// last of them it is woken and asked again. So a console that is no longer asked soon stops, which saves its battery.
 class VantageSensor final : public sensor::ReopeningSensor {
  public:
   VantageSensor(const VantageSettings& settings, std::unique_ptr<bus::BytePort> port);
@@ -74,7 +74,7 @@ class VantageSensor final : public sensor::ReopeningSensor {
   std::array<std::uint8_t, 8> reply_{};
   std::size_t reply_size_ = 0;
   int wake_tries_ = 0;
-  int vain_requests_ = 0;  ///< for packets, since the last one came
+  int vain_requests_ = 0;  ///< requests for packets since the last packet
 
   bool asks_for_loop2_ = true;
   bool has_asked_for_setup_ = false;

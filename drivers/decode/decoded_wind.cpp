@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTurn_deg = 360.0;
 
-/// Is the value absent, or in the closed interval? A NaN is in none.
+/// Returns true if the value is absent, or in the closed interval. A NaN never is.
 bool is_within(const std::optional<double>& value, double low, double high) {
   return !value || (*value >= low && *value <= high);
 }

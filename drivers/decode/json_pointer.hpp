@@ -5,7 +5,7 @@
 
 namespace yuragi::drivers::decode {
 
-/// Is it a JSON pointer (RFC 6901): empty, or a slash before each name, in which "~" stands only in "~0" and "~1"?
+/// Returns true for a JSON pointer (RFC 6901): empty, or a slash before each name, with "~" only in "~0" and "~1".
 /// Thread-safe and realtime-safe: yes.
 constexpr bool is_json_pointer(std::string_view text) noexcept {
   if (text.empty()) return true;

@@ -16,7 +16,7 @@ bool is_digit_or_dot(char c) {
   return (c >= '0' && c <= '9') || c == '.';
 }
 
-/// The value of a hexadecimal digit, or nothing.
+/// The value of a hexadecimal digit, or nullopt.
 std::optional<unsigned> hex_digit(char c) {
   if (c >= '0' && c <= '9') return static_cast<unsigned>(c - '0');
   if (c >= 'A' && c <= 'F') return static_cast<unsigned>(c - 'A' + 10);
@@ -50,7 +50,7 @@ Result<std::optional<double>, Refusal> parse_number(std::string_view field) noex
   field = trimmed(field);
   if (field.empty()) return std::optional<double>();
 
-  // Only digits and a dot behind the sign: from_chars would also take "inf".
+  // Only digits and a point after the sign: from_chars would also accept "inf".
   std::string_view digits = field;
   if (digits.front() == '+' || digits.front() == '-') digits.remove_prefix(1);
   if (digits.empty() || !std::ranges::all_of(digits, is_digit_or_dot)) return Refusal::kMalformed;

@@ -11,10 +11,10 @@
 
 namespace yuragi::drivers::decode {
 
-// What the decoders of lines share: fields, numbers, checksums, units. Nothing here allocates, throws or keeps state;
-// views point into the line that was given. Thread-safe and realtime-safe: yes.
+// The common part of the decoders of lines: fields, numbers, checksums, units. Nothing here allocates, throws or keeps
+// state; views point into the line that was given. Thread-safe and realtime-safe: yes.
 
-/// What a decoder does with a line without a checksum or status that its format requires.
+/// The treatment of a line without a checksum or status that its format requires.
 enum class WhenMissing : std::uint8_t { kRefuse, kAccept };
 
 /// More fields than any sentence has; a line with more is refused.
@@ -58,7 +58,7 @@ Result<std::string_view, Refusal> sentence_of(std::string_view line, WhenMissing
 /// The factor to m/s of an anemometer's unit letter: M (m/s), N (knots), K (km/h), which all of them use.
 std::optional<double> metres_per_second_of(std::string_view letter) noexcept;
 
-/// Is it a status that means "all is well"? A (NMEA), 00 and 60 (Gill).
+/// Returns true for a good status: A (NMEA), 00 and 60 (Gill).
 bool is_good_status(std::string_view status) noexcept;
 
 }  // namespace yuragi::drivers::decode

@@ -66,7 +66,7 @@ class AcuriteStation final : public Station {
     bool operator==(const Report&) const = default;
   };
 
-  /// Report 1; empty if it was refused. False: the device is gone.
+  /// Report 1; nullopt if it was refused. Returns false if the device is disconnected.
   static bool request(Exchange& exchange, Report& report) {
     const Message message = exchange.get_input_report(1, decode::hid::kAcuriteReport1);
     if (message.status == bus::HidStatus::kLost) return false;

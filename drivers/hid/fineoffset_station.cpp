@@ -22,11 +22,11 @@ using namespace std::chrono_literals;
 
 constexpr Nanoseconds kFineOffsetEvery = 48s;
 constexpr Nanoseconds kFineOffsetMinute = 60s;
-constexpr Nanoseconds kFineOffsetMargin = 5s;  // 3, and what two quartzes drift apart until the next search
+constexpr Nanoseconds kFineOffsetMargin = 5s;  // 3, plus the drift of two quartzes until the next search
 constexpr Nanoseconds kFineOffsetSearchStep = 6s;
 constexpr Nanoseconds kFineOffsetSearchAgain = 6h;
 constexpr Nanoseconds kFineOffsetSearchSoon = 1h;  // where nothing was found
-constexpr int kFineOffsetSearchSteps = 10;         // a period and a little more: in calm nothing may change
+constexpr int kFineOffsetSearchSteps = 10;  // a period and a little more: in a calm the console may change nothing
 constexpr Nanoseconds kFineOffsetRetry = 6s;
 constexpr Nanoseconds kFineOffsetReport = 1s;     // for each of a block's reports
 constexpr Nanoseconds kFineOffsetWriting = 2s;    // until a block that was being written is read again
@@ -167,7 +167,7 @@ class FineOffsetStation final : public Station {
             .has_counted = record[0] != last_record_[0]};
   }
 
-  /// Updates the clocks of when the console writes from what has changed since the last read.
+  /// Updates the clocks of the console's writing from the changes since the last read.
   void learn(const RecordChange& change, MonoTime now) {
     const bool is_turn_of_minute = change.has_moved || (change.has_counted && !change.has_measured);
     if (is_turn_of_minute) record_clock_.happened_between(last_read_, now);
@@ -242,8 +242,8 @@ class FineOffsetStation final : public Station {
   }
 
   StationTiming timing_;
-  WriteClock sensor_clock_;  ///< when it writes what it measured
-  WriteClock record_clock_;  ///< when it goes on to the next record: at the turn of a minute
+  WriteClock sensor_clock_;  ///< when it writes its measurements
+  WriteClock record_clock_;  ///< when it moves to the next record: at the turn of a minute
 
   // The present round.
   std::vector<std::uint16_t> addresses_;

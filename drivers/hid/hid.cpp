@@ -74,7 +74,7 @@ std::unique_ptr<sensor::Sensor> open_hid(const ParameterValues& values) {
                                   sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
 }
 
-/// A path of a file is that behind its links.
+/// The path of a file is that of the link's target.
 sensor::ValueSelection hid_selection(const ParameterValues& values) {
   const Keys keys = kHidFields.of(values);
   std::string path = keys.place.path;

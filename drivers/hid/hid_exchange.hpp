@@ -33,7 +33,7 @@ class Exchange {
   bool send(std::span<const std::uint8_t> bytes);
   Message get_input_report(std::uint8_t id, std::size_t size);
 
-  /// Discards reports that came before the request: late replies. False: the device is gone.
+  /// Discards reports that came before the request: late replies. Returns false if the device is disconnected.
   bool discard_waiting();
 
   void refuse(decode::Refusal why) { sink_.refused(why); }

@@ -24,7 +24,7 @@ enum class StationHealth : std::uint8_t {
 struct StationStep {
   MonoTime next;  ///< when the next step is due
   StationHealth health = StationHealth::kSame;
-  std::string trouble = {};  ///< for kUnwell: what is wrong, and what to do
+  std::string trouble = {};  ///< for kUnwell: the trouble, and what to do
 
   static StationStep same(MonoTime next) { return {next}; }
   static StationStep well(MonoTime next) { return {next, StationHealth::kWell}; }
@@ -73,7 +73,7 @@ std::unique_ptr<Station> make_te923_station(const StationTiming& timing);
 /// Every family.
 std::span<const StationKind> station_kinds();
 
-/// What step() returns when the device is gone.
+/// The result of step() when the device is disconnected.
 inline Failure station_is_gone() {
   return {""};
 }

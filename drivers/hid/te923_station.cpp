@@ -49,7 +49,7 @@ class Te923Station final : public Station {
   }
 
  private:
-  /// Collects a block, or as much of it as comes. False: the device is gone.
+  /// Collects a block, or as much of it as comes. Returns false if the device is disconnected.
   bool read_block(Exchange& exchange) {
     size_ = 0;
     const MonoTime deadline = exchange.now() + kTe923Reply;

@@ -38,7 +38,7 @@ class Wmr300Station final : public Station {
   }
 
  private:
-  /// Handles a packet. False: the device was gone when it was acknowledged.
+  /// Handles a packet. Returns false if the device was gone when it was acknowledged.
   bool take(decode::ByteSpan packet, Exchange& exchange, StationStep& step) {
     const bool is_sound = decode::hid::is_sound_wmr300(packet);
     if (is_sound) received_at_ = step.next;

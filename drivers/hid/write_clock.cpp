@@ -31,7 +31,7 @@ WriteClock::Window WriteClock::window_before(MonoTime time) const {
 
 MonoTime WriteClock::clear_from(MonoTime time) const {
   if (!is_known()) return time;
-  // Of the two windows that could be near, the later one begins behind `time`.
+  // Of the two windows that could be near, the later one begins after `time`.
   const Window before = window_before(time + margin_);
   return time < before.to + margin_ ? before.to + margin_ : time;
 }

@@ -19,12 +19,13 @@ class WriteClock {
   bool happened_between(MonoTime from, MonoTime to);
 
   void forget() { window_.reset(); }
-  /// Is the moment known to a third of the period at least? Otherwise keeping away from it would leave no time.
+  /// Returns true if the moment is known to at least a third of the period. Otherwise no time would be left outside of
+  /// it.
   bool is_known() const { return window_ && window_->to - window_->from <= period_ / 3; }
 
-  /// The first time from `time` on that is not near the moment; `time` itself while nothing is known.
+  /// The first time from `time` on that is not near the moment; `time` itself while the moment is unknown.
   MonoTime clear_from(MonoTime time) const;
-  /// The first time from `time` on at which it has just happened and is no longer near; `time` while nothing is known.
+  /// The first time from `time` on at which it has just happened and is no longer near; `time` while it is unknown.
   MonoTime behind(MonoTime time) const;
 
  private:

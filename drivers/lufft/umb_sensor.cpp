@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 using decode::Refusal;
 
-/// A read returns at least so often, so that time-outs are checked.
+/// A read returns at least this often, so that timeouts are checked.
 constexpr Nanoseconds kMaxRead = 200ms;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
@@ -91,7 +91,7 @@ Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::Si
   return awaits_reply_ ? now.mono : next_request_;
 }
 
-/// False: the port is lost.
+/// Returns false if the port is lost.
 bool UmbSensor::ask(MonoTime now, sensor::Sink& sink) {
   using decode::lufft::kUmbChannels;
   using decode::lufft::kUmbWindChannels;
@@ -107,7 +107,7 @@ bool UmbSensor::ask(MonoTime now, sensor::Sink& sink) {
   return true;
 }
 
-/// What has come before is no reply.
+/// Earlier bytes are not a reply.
 void UmbSensor::drop_old_input() {
   static_cast<void>(assembler_.cut());
   for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == bus::ByteStatus::kBytes; ++i) {

@@ -52,7 +52,7 @@ class UmbSensor final : public sensor::ReopeningSensor {
   std::array<std::uint8_t, 512> buffer_{};
   decode::lufft::UmbAssembler assembler_;
 
-  bool asks_for_all_ = true;  // channels, not only for the wind
+  bool asks_for_all_ = true;  // all channels are read, not only those of the wind
   bool awaits_reply_ = false;
   MonoTime next_request_{};
   MonoTime reply_due_{};

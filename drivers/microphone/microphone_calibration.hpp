@@ -11,7 +11,7 @@ namespace yuragi::drivers::microphone {
 /// The parameters gain, exponent and curve of a calibration, with as many digits as a microphone's accuracy justifies.
 ParameterValues::Map parameters_of(const decode::microphone::MicCalibration& calibration);
 
-/// What a microphone's level is measured in, and which speed it stands for.
+/// The unit of a microphone's level, and the corresponding speeds.
 struct MicLevelSettings {
   decode::microphone::MicCalibration calibration{};
   bool is_calibrated = false;              ///< or `calibration` is a common one

@@ -81,8 +81,8 @@ void Sensor::take(const decode::microphone::MicFrameReader::Item& item, const se
   }
 }
 
-/// A stream begins. What was estimated from an earlier one (the noise of a calm, automatic gain, gusts) is kept if its
-/// format is the same.
+/// Begins a stream. Estimates from an earlier one (the noise of a calm, automatic gain, gusts) are kept if the format
+/// is the same.
 void Sensor::take(const decode::microphone::MicHello& hello) {
   if (estimator_ && estimator_->hello() == hello) {
     estimator_->restart();
@@ -137,7 +137,7 @@ void Sensor::publish(const decode::microphone::MicEstimate& estimate, const deco
                 .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood});
 }
 
-/// For people; changes only with what is to be done.
+/// For people; changes only if the advice changes.
 std::string Sensor::detail(const decode::microphone::MicEstimate& estimate) const {
   std::string text = hello_->device;
   if (!settings_.is_calibrated) text += "; not calibrated: set gain and exponent, or curve";

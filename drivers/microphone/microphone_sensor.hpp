@@ -57,11 +57,11 @@ class Sensor final : public sensor::ReopeningSensor {
   std::array<std::uint8_t, 8192> buffer_{};
 };
 
-/// The `yuragi` that is to be the worker: this program if it is one, or else the one beside it or in the PATH.
+/// The `yuragi` program for the worker: this program if it is one, otherwise the one beside it or in the PATH.
 std::string microphone_worker_program();
 
-/// The inputs that the worker lists, and what stands in the way of those that the system has. Waits for ten seconds at
-/// most.
+/// The inputs that the worker lists, and obstacles to the use of those that the system has. Waits for at most ten
+/// seconds.
 std::vector<sensor::FoundDevice> find_microphones(const std::string& worker);
 
 }  // namespace yuragi::drivers::microphone

@@ -23,7 +23,7 @@ namespace {
 constexpr Nanoseconds kSoundTimeout = std::chrono::milliseconds(1500);
 constexpr Nanoseconds kTurn = std::chrono::milliseconds(20);
 
-/// Writes all of it. False: the reader has closed the pipe.
+/// Writes all of it. Returns false if the reader has closed the pipe.
 bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     const ssize_t size = write(descriptor, bytes.data(), bytes.size());

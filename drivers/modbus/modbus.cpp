@@ -183,7 +183,7 @@ std::vector<sensor::Endpoint> modbus_endpoints(const ParameterValues& values) {
   return lines;
 }
 
-/// The register that holds the speed: sensors may have a vane in common.
+/// The register of the speed: sensors can share a vane.
 sensor::ValueSelection modbus_selection(const ParameterValues& values) {
   const Keys keys = kModbusFields.of(values);
   const Profile profile = profile_of(keys);
@@ -217,7 +217,7 @@ std::vector<sensor::KnownDevice> known_modbus_devices() {
   return devices;
 }
 
-/// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
+/// Any serial port can have a Modbus line: `yuragi sensors probe modbus` searches it.
 std::vector<sensor::FoundDevice> find_modbus() {
   return sensor::find_behind_serial_ports("transport = \"rtu\"\n");
 }

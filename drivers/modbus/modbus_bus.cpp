@@ -62,10 +62,10 @@ class Bus::Turn {
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
 
-  /// False: `interruption` was set first.
+  /// Returns false if `interruption` was set first.
   bool has_line() const noexcept { return has_line_; }
 
-  /// Waits for what is left of the gap; false: `interruption` was set first.
+  /// Waits for the rest of the gap. Returns false if `interruption` was set first.
   bool wait_for_gap(const bus::Interruption& interruption, MonoTime now) {
     std::unique_lock lock(bus_.mutex_);
     if (now >= bus_.free_at_) return true;

@@ -47,7 +47,7 @@ class Bus {
   const std::string& where() const noexcept { return where_; }
   decode::modbus::Framing framing() const noexcept { return line_.framing; }
 
-  /// Can sensors with these settings share it? The failure's text is what differs.
+  /// Returns success if sensors with these settings can share it. The failure's text names the difference.
   Result<void, Failure> suits(const bus::ModbusLine& line) const;
 
   /// Sets the least time from a reply to the next request of any sensor; the longest of all calls holds.

@@ -18,14 +18,13 @@ struct RegisterRead {
   std::vector<std::size_t> stations;  ///< which of Profile::quantities
 
   bool contains(Measure measure) const;
-  /// Does it bring something of the wind, and not only other quantities?
+  /// Returns true if it has a part of the wind, and not only other quantities.
   bool has_wind() const { return !measures.empty(); }
 };
 
-/// The requests that read all quantities of a profile, the speed first, those without any wind last: as few as the
-/// profile allows, so that adjoining registers of one slave are read together, and those whose reading has side effects
-/// alone.
-/// `is_direction_apart`: the direction is on a line of its own.
+/// The requests that read all quantities of a profile, the speed first, those without wind last: as few as the profile
+/// allows. Adjacent registers of one slave are read together, those with side effects separately. `is_direction_apart`:
+/// the direction is on another line.
 std::vector<RegisterRead> plan_modbus_reads(const Profile& profile, bool is_direction_apart = false);
 
 /// The request that reads this quantity alone.

@@ -15,7 +15,7 @@ namespace {
 
 using Registers = Result<decode::modbus::Registers, decode::modbus::RefusedReply>;
 
-/// How long a line must be quiet between two requests: shorter than in service, since most get no reply.
+/// How long a line must be quiet between two requests: shorter than in normal use, because most get no reply.
 constexpr Nanoseconds kProbeQuiet = std::chrono::milliseconds(20);
 
 /// Requests that nearly every device replies to: the first register of either kind.
@@ -48,7 +48,7 @@ void judge_by_force(const Profile& profile, const Registers& reply, Fit& fit) {
   fit.verdict = agrees ? ForceVerdict::kAgrees : ForceVerdict::kContradicts;
 }
 
-/// Do both read the same register as a speed, and something else in it?
+/// Returns true if both read the speed from the same register, but with a different meaning.
 bool differ_in_scale(const Profile& one, const Profile& other) {
   const auto place = [](const decode::modbus::Quantity& speed) {
     return std::tuple(speed.function, speed.address, speed.type, speed.order);
@@ -118,14 +118,14 @@ class ProbedLine {
   std::uint16_t transaction_ = 0;
 };
 
-/// Does this reply come from a slave? A gateway's exception that none is there does not count.
+/// Returns true if this reply comes from a slave. A gateway's exception that none exists does not count.
 bool is_sign_of_life(const Registers& reply) {
   return reply || (reply.error().why == decode::Refusal::kException &&
                    !decode::modbus::is_gateway_silence(reply.error().exception));
 }
 
-/// Enters the value of one reply into `fit`. False: it is not plausible. A mark for "no value" does, but not in place
-/// of the speed.
+/// Enters the value of one reply into `fit`. Returns false if it is implausible. A mark for "no value" is accepted, but
+/// not for the speed.
 bool take(const Profile& profile, const RegisterRead& read, const decode::modbus::Registers& registers, Fit& fit) {
   for (const Measure measure : read.measures) {
     const decode::modbus::Quantity& quantity = quantity_of(profile, measure);
@@ -182,8 +182,8 @@ std::optional<Fit> vane_fit_of(const NamedModbusProfile& named, std::uint8_t id,
   return fit_of(named.name, profile, reads, line);
 }
 
-/// Does a slave of this id reply? For devices that ignore requests for registers that they do not have, those of their
-/// own profile are read, with its line settings.
+/// Returns true if a slave of this id replies. Some devices ignore requests for registers that they do not have: so the
+/// registers of each profile are read, with its line settings.
 bool replies_at_all(std::uint8_t id, const bus::ModbusLine& settings, const ProbePlan& plan, ProbedLine& line) {
   for (decode::modbus::Request knock : kKnocks) {
     knock.unit = id;
@@ -276,7 +276,7 @@ Result<int, Failure> probe_modbus(const ProbePlan& plan, const ProbeProgress& pr
 std::vector<bus::ModbusLine> likely_modbus_lines(const std::string& device,
                                                  const std::vector<NamedModbusProfile>& profiles,
                                                  const std::vector<int>& bauds, const std::vector<char>& parities) {
-  // How many profiles have these settings from the factory?
+  // The number of profiles with these settings from the factory.
   using Settings = std::pair<int, char>;
   std::map<Settings, int> counts;
   for (const int baud : {2400, 4800, 9600, 19200, 38400, 57600, 115200}) counts[{baud, 'N'}] = 0;

@@ -49,7 +49,7 @@ struct Fit {
   bool is_at_home = false;  ///< line settings and ids are those of the profile itself
 };
 
-/// Has it any value except 0? A profile of another device often reads zeros.
+/// Returns true if any value is not 0. A profile of another device often reads zeros.
 bool is_live(const Fit& fit);
 
 /// A slave that replied.

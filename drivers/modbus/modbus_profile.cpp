@@ -47,7 +47,7 @@ class TableReader {
     return value->get();
   }
 
-  /// Which of `choices` the text is; `fallback` is what it is if absent.
+  /// The index of the text in `choices`; `fallback` if it is absent.
   std::size_t choice(std::string_view key, std::span<const std::string_view> choices,
                      std::optional<std::string> fallback = std::nullopt) {
     std::string allowed = "one of";
@@ -198,7 +198,7 @@ std::optional<double> optional_number(TableReader& reader, std::string_view key)
   return reader.number(key, -kInfinity, kInfinity, 0.0);
 }
 
-/// What a speed and a direction have in common. `address_base` is what the maker's numbering starts from.
+/// The common part of a speed and a direction. `address_base` is the first number in the maker's numbering.
 decode::modbus::Quantity read_quantity(TableReader& reader, std::int64_t address_base) {
   decode::modbus::Quantity quantity;
   quantity.slave = static_cast<std::uint8_t>(reader.whole("slave", 1, 247));
@@ -234,7 +234,7 @@ decode::modbus::Quantity read_speed(TableReader reader, std::int64_t address_bas
   return speed;
 }
 
-/// Reads what the speed is: three keys that belong together.
+/// Reads the meaning of the speed: three keys that belong together.
 std::optional<sensor::StatedValue> read_value(TableReader& speed) {
   if (!speed.has("value")) {
     for (const char* key : {"averaging_s", "value_source"}) {
@@ -339,8 +339,8 @@ Profile parse_modbus_profile(std::string_view text, std::string_view file) {
   profile.block_gap = static_cast<int>(reader.whole("block_gap", 0, 100, 0));
   profile.north_offset_deg = reader.number("north_offset_deg", -360.0, 360.0, 0.0);
 
-  // Numbered from 0 as on the wire, from 1, or with the table's digit in front. A maker's 30001 that goes on the wire
-  // as it is has base 0.
+  // Numbered from 0 as on the wire, from 1, or with the table's digit in front. A maker's 30001 that is sent unchanged
+  // has base 0.
   static constexpr std::int64_t kBases[] = {0, 1, 30001, 40001};
   const std::int64_t address_base = reader.whole_among("address_base", kBases, 0);
   TableReader speed = reader.table("speed", true);

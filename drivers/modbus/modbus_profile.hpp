@@ -23,7 +23,7 @@ inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9
 enum class ProfileEvidence : std::uint8_t { kRecording, kMaker, kDecoder, kSeller };
 inline constexpr std::array<std::string_view, 4> kProfileEvidenceNames = {"recording", "maker", "decoder", "seller"};
 
-/// A quantity besides the wind, and where the device has it.
+/// A quantity besides the wind, and its registers.
 struct StationQuantity {
   wind::StationQuantity what{};  ///< one of wind::kStationQuantities
   decode::modbus::Quantity quantity;
@@ -35,7 +35,7 @@ struct Profile {
   std::string name;    ///< of the device, for people
   std::string source;  ///< the document with its register map
   std::vector<ProfileEvidence> confirmed_by;
-  std::string unconfirmed;  ///< what nobody confirms, for people; empty: all is confirmed
+  std::string unconfirmed;  ///< unconfirmed parts, for people; empty: all is confirmed
   std::string revision;     ///< of the device or its firmware, if the map differs among them
 
   bool is_serial = true;  ///< its native transport; a serial device can also be reached over TCP, through a gateway
@@ -43,16 +43,16 @@ struct Profile {
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
 
-  Nanoseconds poll_interval = std::chrono::milliseconds(250);     ///< more frequent requests bring nothing new
+  Nanoseconds poll_interval = std::chrono::milliseconds(250);     ///< more frequent requests return the same values
   Nanoseconds min_gap{0};                                         ///< from a reply to the next request
   Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< longest wait for a reply
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< serial line: silence that ends a message
   Nanoseconds delay_after_open{0};                                ///< from opening to the first request
   Nanoseconds warm_up{0};                                         ///< from opening until readings are valid
-  Nanoseconds quantities_interval = std::chrono::seconds(10);     ///< between two looks at `quantities`
+  Nanoseconds quantities_interval = std::chrono::seconds(10);     ///< between two reads of `quantities`
 
   bool block_read = true;         ///< registers that adjoin may be read by one request
-  int block_gap = 0;              ///< so many registers between two quantities may be read along with them
+  int block_gap = 0;              ///< up to this many registers between two quantities can be read along with them
   double north_offset_deg = 0.0;  ///< added to the direction: the device's mark points there instead of to north
 
   decode::modbus::Quantity speed;

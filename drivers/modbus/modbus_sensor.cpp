@@ -11,10 +11,10 @@ namespace {
 
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kMaxSlaveWait = std::chrono::seconds(10);
-/// For what is recorded only, so that a device without it is hardly asked for it.
+/// For recorded quantities only, so that a device without them is rarely asked.
 constexpr Nanoseconds kMaxQuantitiesWait = std::chrono::minutes(10);
 
-/// Does a gateway report that a slave does not reply?
+/// Returns true if a gateway reports that a slave does not reply.
 bool is_silence_by_proxy(const Trouble& trouble) {
   return trouble.kind == Trouble::Kind::kRefused && trouble.refusal.why == decode::Refusal::kException &&
          decode::modbus::is_gateway_silence(trouble.refusal.exception);
@@ -141,7 +141,7 @@ Bus::Reply Sensor::exchange(const Read& read, const sensor::Clock& clock, sensor
 }
 
 MonoTime Sensor::go_on(const Instant& now, sensor::Sink& sink) {
-  // The reads that are due and have not been made in this round. The wind does not wait for the rest.
+  // The due reads of this round that are not yet done. The wind does not wait for them.
   for (++step_; step_ <= reads_.size(); ++step_) {
     if (step_ == wind_reads_) publish_wind(sink);
     if (step_ == reads_.size() || (step_ >= wind_reads_ && !takes_quantities_)) break;

@@ -34,7 +34,7 @@ class Sensor final : public sensor::ReopeningSensor {
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override;
   Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::Sink& sink) override;
-  /// The line may be shared: the bus itself closes it when it has failed.
+  /// The line can be shared: the bus itself closes it when it has failed.
   void close() noexcept override {}
 
  private:
@@ -68,7 +68,7 @@ class Sensor final : public sensor::ReopeningSensor {
   const std::shared_ptr<Bus> direction_bus_;
   bus::Interruption interruption_;
   std::vector<Read> reads_;     ///< the first one reads the speed
-  std::size_t wind_reads_ = 0;  ///< so many of them bring the wind; the others only other quantities
+  std::size_t wind_reads_ = 0;  ///< number of them that have the wind; the others have only other quantities
 
   MonoTime opened_at_{};
   MonoTime round_start_{};

@@ -149,7 +149,7 @@ std::string lines_of(const AnnouncedValue& value, std::string_view topic_key, st
 }  // namespace
 
 std::string quoted_for_toml(const std::string& text) {
-  // What JSON writes in quotes, TOML reads; what is not UTF-8 is replaced.
+  // TOML can read strings that JSON writes in quotes; invalid UTF-8 is replaced.
   std::string printable = text;
   make_printable(printable);
   return json_text(nlohmann::json(printable));

@@ -19,10 +19,10 @@ enum class AnnouncedKind : std::uint8_t { kSpeed, kDirection, kGust };
 /// One value about the wind that a publisher announces.
 struct AnnouncedValue {
   AnnouncedKind kind = AnnouncedKind::kSpeed;
-  std::string device;   ///< what belongs together has the same: an identifier of the device
+  std::string device;   ///< values of one device have the same: an identifier of the device
   std::string name;     ///< for people: the device's and the value's own
   std::string topic;    ///< that it is published on
-  std::string pointer;  ///< where it stands in the message (JSON pointer); empty: the payload is the number
+  std::string pointer;  ///< its place in the message (JSON pointer); empty: the payload is the number
   std::string unit;     ///< of a speed or gust: one of sensor::kSpeedUnitNames
   std::string trouble;  ///< why it cannot be read as it is announced; empty: it can
 

@@ -29,7 +29,7 @@
 namespace yuragi::drivers::mqtt {
 namespace {
 
-/// A look at the clock at least so often.
+/// The clock is checked at least this often.
 constexpr Nanoseconds kMqttWait = std::chrono::milliseconds(250);
 
 using bus::MqttSubscription;
@@ -71,7 +71,7 @@ struct Keys {
   std::string direction_path;
   std::string gust_path;
   std::string speed_unit;
-  bool speaks_on_change = false;
+  bool reports_on_change = false;
 
   bool has_own_unit() const { return speed_unit != kMqttUnits[0]; }
 };
@@ -158,13 +158,13 @@ const Fields<Keys> kMqttFields = {
       .default_value = false,
       .help = "the publisher sends only changes (Home Assistant's statestream): without messages the wind counts as "
               "unchanged, for as long as `silence`, which must be longer than the longest calm"},
-     &Keys::speaks_on_change},
+     &Keys::reports_on_change},
     {{"keep_alive", "s", std::int64_t{15}, 5, 3600, "a broker that sends nothing for this long is pinged"},
      of(&Settings::subscription, &MqttSubscription::keep_alive),
      [](std::int64_t time_s) { return std::chrono::seconds(time_s); }},
 };
 
-/// A direction or gust that has come, and when. It is kept for the speeds that come without one.
+/// The last direction or gust, and its time. It is kept for speeds that arrive without one.
 struct HeldValue {
   std::optional<double> value;
   MonoTime since{};
@@ -177,7 +177,7 @@ std::string shown(const std::string& text) {
   return shortened(printable, 20);
 }
 
-/// Does any of the sources read JSON?
+/// Returns true if any of the sources reads JSON.
 PayloadForm form_of(const Settings& settings) {
   for (const Source* const source : {&settings.speed, &settings.direction, &settings.gust}) {
     if (std::ranges::any_of(source->places, &Place::is_json)) return PayloadForm::kJson;
@@ -252,9 +252,9 @@ class Sensor final : public sensor::ReopeningSensor {
     const auto unit = unit_of(payload);
     if (!unit) return sink.refused(unit.error());
 
-    const auto direction = said_in(settings_.direction, message.topic, payload, 1.0, now.mono, sink);
+    const auto direction = value_in(settings_.direction, message.topic, payload, 1.0, now.mono, sink);
     if (direction) hold_direction(*direction, sink);
-    const auto gust = said_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
+    const auto gust = value_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
     if (gust && !hold_gust(*gust)) return sink.refused(decode::Refusal::kImplausible);
     if (!bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) return;
     const Place* const speed = place_in(payload, settings_.speed);
@@ -265,7 +265,7 @@ class Sensor final : public sensor::ReopeningSensor {
     if (!direction && !gust && !has_quantities) sink.refused(decode::Refusal::kNotMine);
   }
 
-  /// Does the message come from the station that is read? Where publishers name none, always.
+  /// Returns true if the message comes from the selected station; always true if publishers name none.
   bool is_of_the_station(const Payload& payload, MonoTime now) {
     if (!settings_.preset->names_stations || !payload.json().is_object()) return true;
     const StationIdentity station = station_of(payload);
@@ -291,8 +291,8 @@ class Sensor final : public sensor::ReopeningSensor {
 
   /// Returns a direction or gust of this message: without a value if that cannot be read, or is sent as unknown;
   /// nullopt if the message has no place for it.
-  std::optional<HeldValue> said_in(const Source& source, const std::string& topic, const Payload& payload, double unit,
-                                   MonoTime now, sensor::Sink& sink) const {
+  std::optional<HeldValue> value_in(const Source& source, const std::string& topic, const Payload& payload, double unit,
+                                    MonoTime now, sensor::Sink& sink) const {
     if (!bus::mqtt_topic_matches(topic, source.topic)) return std::nullopt;
     const Place* const place = place_in(payload, source);
     if (place == nullptr) return std::nullopt;
@@ -310,7 +310,7 @@ class Sensor final : public sensor::ReopeningSensor {
     is_impossible_ = said.value && !direction_.value;
     if (is_impossible_) sink.refused(decode::Refusal::kImplausible);
   }
-  /// False: it is impossible, and not kept.
+  /// Returns false if it is impossible; then it is not kept.
   bool hold_gust(const HeldValue& said) {
     gust_ = said;
     if (!said.value) return true;
@@ -364,15 +364,15 @@ class Sensor final : public sensor::ReopeningSensor {
   PayloadForm form_;
   HeldValue direction_;
   HeldValue gust_;              // m/s
-  bool is_impossible_ = false;  // the last direction was none
+  bool is_impossible_ = false;  // the last direction was missing
   StationChoice stations_;
   std::string note_;  // why messages cannot be read, for the status; empty: they can
   sensor::ReadingLimit limit_;
   bool has_received_ = false;  // of the wind, since it connected
-  MonoTime received_at_{};     // or since when it could have
+  MonoTime received_at_{};     // or since when wind could have been received
 };
 
-/// Throws, naming the setting, for what can be neither subscribed to nor found.
+/// Throws, naming the setting, if a topic cannot be subscribed to, or a value not found.
 void check_source(std::string_view name, const Source& source) {
   if (!source.topic.empty() && !bus::is_mqtt_filter(source.topic)) {
     throw std::runtime_error(
@@ -490,7 +490,7 @@ sensor::ValueSelection mqtt_selection(const ParameterValues& values) {
 
 double mqtt_unchanged_for_s(const ParameterValues& values) {
   const Keys keys = kMqttFields.of(values);
-  return keys.speaks_on_change ? seconds(keys.settings.silence) : 0.0;
+  return keys.reports_on_change ? seconds(keys.settings.silence) : 0.0;
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ class Payload {
   /// `bytes` must outlive it. Never throws for any bytes.
   explicit Payload(std::string_view bytes, PayloadForm form = PayloadForm::kJson);
 
-  /// Is it JSON that does not have the place? Payloads that are not JSON lack none: number_at() finds whether they can
-  /// be read.
+  /// Returns true if it is JSON without the place. Payloads that are not JSON lack none: number_at() determines whether
+  /// they can be read.
   bool lacks(const std::string& pointer) const;
 
   /// Returns the number at that place; nullopt if a JSON payload does not have the place, or has null there. Text that

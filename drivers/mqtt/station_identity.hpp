@@ -18,7 +18,7 @@ struct StationIdentity {
   bool operator==(const StationIdentity&) const = default;
 
   bool is_empty() const noexcept { return model.empty() && id.empty() && channel.empty(); }
-  /// Is `other` one of those that this one stands for?
+  /// Returns true if `other` is one of those that this one includes.
   bool covers(const StationIdentity& other) const noexcept;
 };
 
@@ -35,11 +35,11 @@ class StationChoice {
   /// `patience`: how long the station that is read may be silent before another takes its place.
   explicit StationChoice(Nanoseconds patience) : patience_(patience) {}
 
-  /// A message with wind of `station` has come. Is it the one that is read?
+  /// Call for a message with wind of `station`. Returns true if it is the selected one.
   bool offer(const StationIdentity& station, MonoTime now);
-  /// Is it the one that is read?
+  /// Returns true for the selected station.
   bool is_read(const StationIdentity& station) const noexcept { return read_ == station; }
-  /// The connection was opened again: it begins anew.
+  /// Call when the connection was opened again: starts again.
   void restart() noexcept;
 
   /// Returns a warning if another station has been received within that time; empty: none has.

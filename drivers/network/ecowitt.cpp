@@ -86,7 +86,7 @@ class EcowittSensor final : public sensor::ReopeningSensor {
   void close() noexcept override { port_->close(); }
 
  private:
-  /// Into `reply_` what comes until it is whole, wrong, or late. A connection that ends ends the reply.
+  /// Reads into `reply_` until it is complete, invalid, or late. The end of the connection ends the reply.
   Result<void, Failure> receive(const sensor::Clock& clock) {
     reply_.clear();
     const MonoTime due = clock.now().mono + settings_.response_timeout;

@@ -33,7 +33,7 @@
 namespace yuragi::drivers::network {
 namespace {
 
-/// A look at the clock at least so often.
+/// The clock is checked at least this often.
 constexpr Nanoseconds kPushWait = std::chrono::milliseconds(250);
 /// So many of its usual pauses are silence.
 constexpr int kSilentPushPauses = 5;
@@ -154,7 +154,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   void close() noexcept override { server_.close(); }
 
  private:
-  /// What comes during one work().
+  /// The pushes during one work().
   class Visits final : public HttpService {
    public:
     Visits(EcowittPushSensor& sensor, const sensor::Clock& clock, sensor::Sink& sink)
@@ -299,8 +299,8 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   FollowedStation station_;
   StationSilence silence_;
   sensor::ReadingLimit limit_;
-  std::string trouble_;   // of the last push that had no wind, since the last wind; empty: none
-  std::string stranger_;  // who was refused first; empty: nobody
+  std::string trouble_;   // of the last push without wind, since the last wind; empty: none
+  std::string stranger_;  // the first refused sender; empty: none
   bool is_silent_ = true;
 };
 

@@ -14,11 +14,11 @@ class FollowedStation {
   /// `chosen`: the identity of the configured station; empty: none is configured.
   explicit FollowedStation(std::string chosen) : chosen_(std::move(chosen)) {}
 
-  /// A station has spoken. Is it the one that is followed? `name`: what people may see of it, which its identity need
-  /// not be.
+  /// Call for a message of a station. Returns true if it is the followed one. `name`: what people may see of it, which
+  /// its identity need not be.
   bool hears(const std::string& identity, const std::string& name, MonoTime now);
 
-  /// The one that is followed has been silent for too long: without a configured one the next that speaks is followed.
+  /// The followed station was silent for too long: if none is configured, the next one that sends is followed.
   void lose();
 
   /// Returns the name of another one, if none is configured and another one has been received in the last minutes;
@@ -26,7 +26,7 @@ class FollowedStation {
   std::string rival(MonoTime now) const;
 
  private:
-  /// Some stations speak every 5 or 10 minutes only (S9.1, S9.3).
+  /// Some stations send only every 5 or 10 minutes (S9.1, S9.3).
   static constexpr Nanoseconds kStillThere = std::chrono::minutes(11);
 
   struct Heard {

@@ -25,9 +25,9 @@ namespace http = boost::beast::http;
 using boost::asio::ip::tcp;
 
 constexpr int kListenBacklog = 16;
-/// What a client may still send after it has been answered, before its connection is reset.
+/// Limit of further data of a client after the reply, before its connection is reset.
 constexpr std::size_t kMaxDrained = 64UL * 1024;
-/// What is done of what has come before serve() comes back, so that a flood does not keep it.
+/// Limit of steps per serve(), so that a flood does not keep it busy.
 constexpr int kMaxSteps = 256;
 
 std::string listen_remedy_of(const boost::system::error_code& error) {
@@ -81,11 +81,11 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   }
 
   const boost::asio::ip::address& sender() const noexcept { return sender_; }
-  /// Has no whole request come yet?
+  /// Returns true until a whole request was received.
   bool is_waiting() const noexcept { return is_waiting_; }
 
  private:
-  /// Does what an event is about. An exception ends this connection, and no other.
+  /// Handles an event. An exception ends only this connection.
   template <class Work>
   void go_on(Work&& work) {
     if (!contain("a connection that pushes", std::forward<Work>(work))) end();
@@ -227,10 +227,10 @@ void HttpServer::interrupt() noexcept {
 }
 
 void HttpServer::accept() {
-  // async_accept gives the sender: remote_endpoint() fails once the client has gone.
+  // async_accept returns the sender: remote_endpoint() fails once the client has disconnected.
   acceptor_.async_accept(sender_, [this](const boost::system::error_code& error, tcp::socket socket) {
     if (error == boost::asio::error::operation_aborted) return;
-    // What the client has undone in the meantime is its own affair.
+    // It is no error if the client has closed the connection meanwhile.
     if (error && error != boost::asio::error::connection_aborted) {
       failure_ = Failure{"cannot accept connections (" + error.message() + "): reopening it"};
       return;

@@ -23,7 +23,7 @@ namespace yuragi::drivers::network {
 struct HttpRequest {
   boost::asio::ip::address sender = {};
   std::string_view method = {};  ///< "GET", "POST"
-  std::string_view target = {};  ///< what stands behind it: the path and the query
+  std::string_view target = {};  ///< the path and the query, after the method
   std::string_view host = {};    ///< the field "Host"; empty: none
   bool is_of_browser = false;    ///< it has fields that only browsers send (Origin, Referer, Sec-Fetch-...)
   std::string_view body = {};
@@ -43,11 +43,11 @@ enum class HttpFailure : std::uint8_t {
   kTooMany,    ///< it was the oldest of too many connections, and was closed for a new one
 };
 
-/// What a server does with what comes. Called by HttpServer::serve() alone, on its thread.
+/// Handles a server's requests. Called only by HttpServer::serve(), on its thread.
 class HttpService {
  public:
   virtual ~HttpService() = default;
-  /// May this address connect? If not, its connection is closed at once.
+  /// Returns true if this address can connect. If not, its connection is closed at once.
   virtual bool admits(const boost::asio::ip::address& sender) = 0;
   virtual HttpAnswer answer(const HttpRequest& request) = 0;
   virtual void failed(HttpFailure why, const boost::asio::ip::address& sender) = 0;
@@ -58,7 +58,7 @@ struct HttpLimits {
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 16UL * 1024;
   std::size_t connections = 16;
-  /// For a connection from its beginning to its end, however busy it is.
+  /// Maximum duration of a connection, even if it is busy.
   Nanoseconds time = std::chrono::seconds(10);
 };
 
@@ -83,7 +83,7 @@ class HttpServer {
   /// While it is open: the port at which it listens.
   std::uint16_t port() const noexcept { return port_; }
 
-  /// Serves what has come, waiting for at most `timeout` for something to come. The failure: it can accept no more.
+  /// Serves received requests, waiting for at most `timeout`. Fails if it cannot accept any more.
   Result<void, Failure> serve(Nanoseconds timeout, HttpService& service);
 
   /// Ends a serve() that waits, and makes all later ones end at once.

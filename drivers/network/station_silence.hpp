@@ -9,11 +9,11 @@
 
 namespace yuragi::drivers::network {
 
-/// When a station that speaks at an interval of its own counts as silent: without wind for the configured time and for
-/// a few of its usual intervals. A station that takes the place of another one starts anew. Thread-safe: no.
+/// Decides when a station with its own interval counts as silent: without wind for the configured time and for a few of
+/// its usual intervals. A station that replaces another one starts again. Thread-safe: no.
 class StationSilence {
  public:
-  /// `shortest`: a silence is at least this long; `intervals`: and at least so many usual intervals.
+  /// `shortest`: minimum length of a silence; `intervals`: and its minimum number of usual intervals.
   StationSilence(Nanoseconds shortest, int intervals) : shortest_(shortest), intervals_(intervals) {}
 
   /// Forgets all: there could be wind from now on.
@@ -44,7 +44,7 @@ class StationSilence {
  private:
   Nanoseconds shortest_;
   int intervals_;
-  MonoTime since_{};                     ///< the last wind, or since when there could have been one
+  MonoTime since_{};                     ///< the last wind, or the time since when wind could have been received
   std::optional<std::string> identity_;  ///< of the station that gave the last wind
   std::array<Nanoseconds, 2> last_pauses_{};
 };

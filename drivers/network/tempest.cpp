@@ -28,7 +28,7 @@ namespace {
 using decode::network::TempestKind;
 using decode::network::TempestMessage;
 
-/// A look at the clock at least so often.
+/// The clock is checked at least this often.
 constexpr Nanoseconds kTempestWait = std::chrono::milliseconds(250);
 /// So many of its usual pauses are silence.
 constexpr int kSilentPauses = 5;

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxStations = 100;
 
-/// Is it what stands on a station or hub? No other text of a datagram's is shown or written into a configuration.
+/// Returns true for a serial number as printed on a station or hub. No other text of a datagram is shown or written
+/// into a configuration.
 bool is_serial_number(const std::string& text) {
   const auto is_part = [](char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';

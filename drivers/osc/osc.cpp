@@ -28,9 +28,9 @@
 namespace yuragi::drivers::osc {
 namespace {
 
-/// A look at the clock at least so often.
+/// The clock is checked at least this often.
 constexpr Nanoseconds kOscWait = std::chrono::milliseconds(250);
-/// The time tag of a message may be so far ahead of our clock.
+/// Limit for the time tag of a message ahead of our clock.
 constexpr Nanoseconds kFarthestAhead = std::chrono::seconds(1);
 
 struct Settings {
@@ -41,7 +41,7 @@ struct Settings {
   std::int64_t gust_argument = -1;
   double metres_per_second = 1.0;
   Nanoseconds silence = std::chrono::seconds(5);
-  bool speaks_on_change = false;  ///< a silence means that the wind is unchanged
+  bool reports_on_change = false;  ///< a silence means that the wind is unchanged
 };
 
 auto of(auto member) {
@@ -84,7 +84,7 @@ const Fields<Settings> kOscFields = {
       .default_value = false,
       .help = "the sender sends only changes: without messages the wind counts as unchanged, for as long as `silence`, "
               "which must be longer than the longest calm"},
-     &Settings::speaks_on_change},
+     &Settings::reports_on_change},
 };
 
 std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t which) {
@@ -196,10 +196,10 @@ class Sensor final : public sensor::ReopeningSensor {
   std::unique_ptr<bus::BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kMaxDatagram);
   sensor::ReadingLimit limit_;
-  std::string strangers_;      // who was refused first, for the status; empty: nobody
+  std::string strangers_;      // the first refused sender, for the status; empty: none
   std::string future_;         // how far ahead the first was that was refused for its time; empty: none
   bool has_received_ = false;  // of the wind, since it has the port
-  MonoTime received_at_{};     // or since when it could have
+  MonoTime received_at_{};     // or since when wind could have been received
 };
 
 /// Throws, naming the setting, if it is not set who may send.
@@ -237,7 +237,7 @@ sensor::ValueSelection osc_selection(const ParameterValues& values) {
 
 double osc_unchanged_for_s(const ParameterValues& values) {
   const Settings settings = kOscFields.of(values);
-  return settings.speaks_on_change ? seconds(settings.silence) : 0.0;
+  return settings.reports_on_change ? seconds(settings.silence) : 0.0;
 }
 
 Result<sensor::SimulatedDevice, Failure> osc_simulated(const ParameterValues& values) {

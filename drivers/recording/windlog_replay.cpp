@@ -125,7 +125,7 @@ class WindlogReplay final : public sensor::Sensor, public Player {
   /// The states that are reported by the link.
   enum class Doing : std::uint8_t { kPlaying, kPaused, kFinished };
 
-  /// Plays what is due; returns when the next reading is due.
+  /// Plays the readings that are due; returns when the next one is due.
   Result<MonoTime, Failure> play(const Instant& now, sensor::Sink& sink) {
     if (!player_) {
       auto opened = windlog::Player::open(file_, options_, now, stop_.get_token());
@@ -221,14 +221,14 @@ std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   if (file.empty()) throw std::runtime_error("windlog: file: name the recording to play");
   if (!windlog::recording_exists(file)) {
     throw std::runtime_error("windlog: file: " + file.string() +
-                             ": there is no such recording; `yuragi run --record FILE` or `yuragi import` makes one");
+                             ": the recording does not exist; `yuragi run --record FILE` or `yuragi import` makes one");
   }
   value_of("start", windlog::check_playback_start(keys.options.playback.start));
   keys.options.recorded_offset = value_of("utc_offset", windlog::parse_utc_offset(keys.utc_offset));
   return play_recording(file, std::move(keys.options));
 }
 
-/// The same readings may be played from two places on.
+/// The same readings can be played from two positions.
 sensor::ValueSelection windlog_selection(const ParameterValues& values) {
   const ReplayKeys keys = kWindlogFields.of(values);
   std::error_code error;

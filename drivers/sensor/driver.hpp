@@ -38,7 +38,7 @@ struct KnownDevice {
   std::optional<StatedValue> value = {};  ///< what its speed is; nullopt: unknown
 };
 
-/// What a device measures besides the speed, by its data sheet.
+/// The other quantities that a device measures, by its data sheet.
 struct PromisedQuantities {
   bool direction = false;
   bool gust = false;
@@ -98,7 +98,7 @@ struct DriverDescription {
   std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
-  /// What `yuragi calibrate` finds out of it.
+  /// The calibrations that `yuragi calibrate` offers.
   CalibrationMeans calibration = CalibrationMeans::kFactors;
   /// The formats of `yuragi decode` that read its messages.
   std::span<const MessageFormat> message_formats = {};

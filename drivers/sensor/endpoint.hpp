@@ -8,7 +8,7 @@
 
 namespace yuragi::drivers::sensor {
 
-/// What stands at the other end of a sensor.
+/// The kind of a sensor's other end.
 enum class EndpointKind : std::uint8_t {
   kSerialPort,
   kHid,  ///< a USB device, by the system's HID driver
@@ -24,7 +24,7 @@ enum class EndpointKind : std::uint8_t {
 /// Something outside of this program that a sensor needs.
 struct Endpoint {
   EndpointKind kind = EndpointKind::kSerialPort;
-  /// As the configuration calls it: "/dev/ttyUSB0", "192.168.1.20:502", ":50222"; empty: what is found.
+  /// As in the configuration: "/dev/ttyUSB0", "192.168.1.20:502", ":50222"; empty: whatever is found.
   std::string name{};
   /// Its identity, if only one sensor can have it: "serial port /dev/ttyUSB0"; empty: several can.
   std::string claim{};

@@ -16,7 +16,7 @@ class ReadingLimit {
  public:
   static constexpr std::int64_t kReadingsPerSecond = 100;
 
-  /// May one more be published now? If so, it is counted.
+  /// Returns true if another reading can be published now, and counts it.
   bool admits(MonoTime now) noexcept {
     paid_until_ = std::max(paid_until_, now);
     if (paid_until_ - now > kBurst - kInterval) return false;

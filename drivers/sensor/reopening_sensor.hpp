@@ -33,8 +33,8 @@ class ReopeningSensor : public Sensor {
   /// Closes the device. Called after a failed work() too; never twice.
   virtual void close() noexcept = 0;
 
-  /// Has the device returned, as far as can be seen without waiting? Called at each poll() before the next attempt to
-  /// open it is due; if true, the attempt is made at once.
+  /// Returns true if the device has returned, as far as can be seen without waiting. Called at each poll() before the
+  /// next attempt to open it is due; if true, the attempt is made at once.
   virtual bool poll_for_return() { return false; }
 
   /// For work(): the device sends valid messages. `detail` is for people: what it is, and where.

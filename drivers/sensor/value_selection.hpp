@@ -8,7 +8,7 @@
 
 namespace yuragi::drivers::sensor {
 
-/// One setting that selects among what a device sends.
+/// A setting that selects from a device's messages.
 struct SelectedPart {
   std::string_view key;  ///< the setting's name
   std::string value;     ///< empty: any
@@ -17,7 +17,7 @@ struct SelectedPart {
   bool (*covers)(const std::string& wide, const std::string& narrow) = nullptr;
 };
 
-/// What selects the values that a sensor reads. Two sensors of one driver that read the same values would count one
+/// The selection of the values that a sensor reads. Two sensors of one driver that read the same values would count one
 /// wind twice.
 struct ValueSelection {
   std::string device;                    ///< its identity, for people, too: "gateway 192.168.1.30:45000"
@@ -28,7 +28,7 @@ struct ValueSelection {
 /// Returns true if a sensor with `wide` may read all that one of the same driver with `narrow` reads. Thread-safe: yes.
 bool covers(const ValueSelection& wide, const ValueSelection& narrow);
 
-/// The selection of what comes through a port (bus::device_of()).
+/// The selection of values from a port (bus::device_of()).
 ValueSelection selection_at(const bus::BytePortAddress& address, std::vector<SelectedPart> parts = {});
 
 /// SelectedPart::covers of lists that are separated by commas.

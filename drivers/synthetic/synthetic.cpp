@@ -50,7 +50,7 @@ class Sensor final : public sensor::Sensor {
                   .gust_m_s = std::nullopt,
                   .quality = wind::ReadingQuality::kSimulated});
 
-    // Readings stay on their own grid; those that a halted machine missed are not made up for.
+    // Readings stay on their own grid; those that a halted machine missed are skipped.
     count_ = (now.mono - begun_) / interval_ + 1;
     return begun_ + count_ * interval_;
   }

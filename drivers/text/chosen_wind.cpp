@@ -17,8 +17,8 @@ constexpr std::array<std::string_view, 4> kChosenFrames = {"auto", "north", "rel
 
 /// Below this no vane turns, and anemometers leave out the direction.
 constexpr double kCalm_m_s = 0.5;
-/// A direction and a speed that come in two messages belong together if they come so close, or within one pause and a
-/// half of the directions.
+/// A direction and a speed in two messages belong together if they arrive within this time, or within one and a half
+/// pauses of the directions.
 constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
 
 bool is_calm(std::optional<double> speed_m_s) {

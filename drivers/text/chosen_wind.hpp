@@ -24,7 +24,7 @@ struct ChosenWindSettings {
 std::span<const Parameter> chosen_wind_parameters();
 ChosenWindSettings chosen_wind_settings_of(const ParameterValues& values);
 
-/// What the setting "reference" selects.
+/// The selection by the setting "reference".
 sensor::SelectedPart reference_part(const ChosenWindSettings& settings);
 
 /// The frame in which a direction of that reference is. Thread-safe and realtime-safe: yes.
@@ -50,7 +50,7 @@ class ChosenWind {
                                                               const decode::DecodedWind& wind, const Instant& now) {
     return offer({.name = source, .frame = frame_of_reference(wind.reference)}, wind, now);
   }
-  /// The burst is over: what was held until then.
+  /// Call when the burst is over: returns the held reading.
   std::optional<wind::Reading> take_held();
   /// The device was opened again.
   void restart();

@@ -157,7 +157,7 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
 
 namespace {
 
-/// Where the speed stands in a line; what the format does not use is any.
+/// The place of the speed in a line; settings that the format does not use match any.
 sensor::ValueSelection line_selection(const ParameterValues& values) {
   const LineSensorSettings settings = line_sensor_settings_of(values);
   const LineQuantity& speed = settings.line.speed;

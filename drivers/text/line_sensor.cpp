@@ -45,7 +45,7 @@ Sensor::Judgement LineSensor::judge(std::string_view line, const Instant& now) {
   const auto wind = decode::text::decode_line(settings_.line, line);
   if (!wind) return wind.error();
 
-  // The shape of the lines is the one that comes twice in a row; what differs from it is refused.
+  // The shape of the lines is the one that occurs twice in a row; other lines are refused.
   const std::size_t shape = shape_of(decode::trimmed(line), settings_.line.separator);
   const bool comes_again = std::exchange(last_shape_, shape) == shape;
   if (!shape_ || comes_again) shape_ = shape;

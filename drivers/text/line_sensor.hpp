@@ -41,7 +41,7 @@ class LineSensor final : public Sensor {
   std::string name() const override { return "lines of numbers"; }
 
   LineSensorSettings settings_;
-  std::optional<std::size_t> shape_;       // of the lines that are accepted
+  std::optional<std::size_t> shape_;       // shape of the accepted lines
   std::optional<std::size_t> last_shape_;  // of the line before
   bool follows_garbage_ = false;
 };

@@ -183,7 +183,7 @@ std::optional<sensor::StatedValue> nmea_value(const ParameterValues& values) {
   return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = "Vaisala M211840EN: Sm"};
 }
 
-/// What yuragi-sim sends for the formats and sentences that a sensor takes.
+/// The formats for yuragi-sim, for a sensor's formats and sentences.
 std::string simulated_formats(const ParameterValues& values) {
   const std::string& format = values.text("format");
   if (format != "auto" && format != "nmea") return format;
@@ -205,8 +205,8 @@ Result<sensor::SimulatedDevice, Failure> nmea_simulated(const ParameterValues& v
   simulated.values.set("talker", std::string());
   simulated.values.set("address", std::string("01"));
   simulated.values.set("xdr_id", std::int64_t{0});
-  const bool says_north = formats.find("mwd") != std::string::npos || formats.find("mda") != std::string::npos;
-  if (!says_north || (reference != "north" && reference != "auto"))
+  const bool reports_north = formats.find("mwd") != std::string::npos || formats.find("mda") != std::string::npos;
+  if (!reports_north || (reference != "north" && reference != "auto"))
     simulated.north_offset_deg = values.number("north_offset");
   return simulated;
 }

@@ -104,7 +104,7 @@ Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values
 
 namespace {
 
-/// What yuragi-sim sends for the lines that a sensor takes; a CAN interface's are those of candump.
+/// The format for yuragi-sim, for a sensor's lines; for a CAN interface that of candump.
 std::string simulated_format(const ParameterValues& values) {
   const std::string& format = values.text("format");
   if (values.text("transport") == "can") return "candump";

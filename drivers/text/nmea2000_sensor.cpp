@@ -34,7 +34,7 @@ std::string Nmea2000Sensor::name() const {
   return taken;
 }
 
-std::string Nmea2000Sensor::told_trouble() const {
+std::string Nmea2000Sensor::reported_trouble() const {
   using State = decode::marine::ControllerState;
   constexpr std::string_view kSuspects = "check the bit rate (250000), the wires and both terminators of the bus";
   const bus::BytePortAddress& address = settings().address;

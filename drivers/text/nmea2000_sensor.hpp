@@ -32,7 +32,7 @@ class Nmea2000Sensor final : public Sensor {
   std::optional<wind::Reading> take_held() override { return wind_.take_held(); }
   void begin() override;
   std::string name() const override;
-  std::string told_trouble() const override;
+  std::string reported_trouble() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
   Nmea2000SensorSettings settings_;

@@ -98,7 +98,7 @@ Sensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& now) {
   const auto wind = decode(format, line);
   if (!wind) return wind.error();
 
-  // Is it one of the configured sentences?
+  // Refuses sentences that are not configured.
   const MessageName message = name_of_message(format, line);
   const bool is_wanted = settings_.sentences.empty() ||
                          std::ranges::find(settings_.sentences, message.sentence) != settings_.sentences.end();

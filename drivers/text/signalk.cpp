@@ -86,12 +86,12 @@ std::vector<Parameter> signalk_parameters() {
 }
 const std::vector<Parameter> kSignalKParameters = signalk_parameters();
 
-/// What a JSON text cannot hold as it is.
+/// Characters that JSON must escape.
 bool needs_escape(char c) {
   return c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ';
 }
 
-/// What a line of HTTP holds between blanks.
+/// Characters allowed between blanks in a line of HTTP.
 bool is_visible(char c) {
   return c > ' ' && c <= '~';
 }

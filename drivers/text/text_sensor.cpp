@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A read returns at least so often, so that time-outs are checked.
+/// A read returns at least this often, so that timeouts are checked.
 constexpr Nanoseconds kMaxRead = 200ms;
 /// The messages of one burst follow each other faster.
 constexpr Nanoseconds kBurstEnd = 200ms;
@@ -25,7 +25,7 @@ constexpr Nanoseconds kPatience = 3s;
 constexpr Nanoseconds kFirstSilence = 120s;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
-/// The silence after which a device is opened again doubles so often.
+/// Maximum number of doublings of the silence after which a device is opened again.
 constexpr int kMaxDoublings = 6;
 /// A device that does not reply gets fewer requests: the interval grows up to this many times.
 constexpr int kRarestRequest = 8;
@@ -34,7 +34,7 @@ constexpr int kForgottenBlocks = 64;
 constexpr std::size_t kShownOfLine = 60;
 constexpr Nanoseconds kForAges = 1h;
 
-/// The beginning of a line, with what cannot be shown replaced.
+/// The beginning of a line, with unprintable characters replaced.
 std::string shown(std::string_view line) {
   std::string text(line.substr(0, kShownOfLine));
   std::ranges::replace_if(
@@ -169,14 +169,14 @@ bool Sensor::can_send() const noexcept {
   return is_connection() || settings_.address.kind == bus::BytePortKind::kWebSocket;
 }
 
-/// False: the port is lost.
+/// Returns false if the port is lost.
 bool Sensor::greet(sensor::Sink& sink) {
   if (!port_->write(bytes_of(settings_.greeting))) return false;
   sink.raw(sensor::RawDirection::kSent, bytes_of(settings_.greeting));
   return true;
 }
 
-/// False: the port is lost.
+/// Returns false if the port is lost.
 bool Sensor::request_if_due(MonoTime now, sensor::Sink& sink) {
   if (awaits_reply_ || now < next_request_) return true;
   drop_cut_line(sink);
@@ -302,7 +302,7 @@ Nanoseconds Sensor::silence_limit() const {
 void Sensor::judge_device(MonoTime now, sensor::Sink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
-  if (const std::string told = told_trouble(); !told.empty()) return report_unusable(sink, told);
+  if (const std::string told = reported_trouble(); !told.empty()) return report_unusable(sink, told);
   if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
   const decode::Refusal why = main_refusal();
   const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;

@@ -61,7 +61,7 @@ class Sensor : public sensor::ReopeningSensor {
   virtual std::string name() const = 0;
   /// Returns a trouble that the device itself reports, and what to do; empty: none. Reported before the causes that its
   /// silence or its lines suggest.
-  virtual std::string told_trouble() const { return {}; }
+  virtual std::string reported_trouble() const { return {}; }
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
 
@@ -133,7 +133,7 @@ class Sensor : public sensor::ReopeningSensor {
   std::size_t late_lines_ = 0;
 };
 
-/// Is every byte one that text has? NUL, STX, ETX and tab may be among them.
+/// Returns true if every byte is one of text, including NUL, STX, ETX and tab.
 bool is_text(std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::text

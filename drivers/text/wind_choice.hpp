@@ -50,19 +50,19 @@ class WindChoice {
   /// `frame`: accept only this one; nullopt: the best.
   explicit WindChoice(std::optional<WindFrame> frame) : wanted_(frame) {}
 
-  /// A message of `source` has come.
+  /// Call for a message of `source`.
   Verdict offer(const Source& source, const Said& said, MonoTime now);
-  /// The first burst is over: what was held is the wind.
+  /// Call when the first burst is over: the held values are the wind.
   void settle() noexcept { is_settled_ = true; }
 
-  /// Is the direction of what was just offered the wind's?
+  /// Returns true if the direction of the last message is the wind's.
   bool takes_direction() const noexcept { return takes_direction_; }
   /// The name of the source of the direction; empty: there was no direction yet.
   const std::string& direction_source() const noexcept { return direction_.source.name; }
   /// Between the last two of its directions; zero before.
   Nanoseconds direction_pause() const noexcept { return direction_.pause; }
 
-  /// The device was opened again: its sources of the speed begin anew. Its frame of direction stays.
+  /// The device was opened again: its sources of the speed start again. Its frame of direction stays.
   void restart() noexcept;
 
  private:

@@ -22,7 +22,7 @@ struct DaqWiring {
       {};  ///< the voltage across the vane's potentiometer; empty: it is known
 };
 
-/// What a device reports about itself.
+/// A device's own description.
 struct DaqIdentity {
   std::string serial;  ///< empty if it has only the serial number that the bus shows
 };

@@ -93,8 +93,8 @@ Result<MonoTime, Failure> Sensor::work(const sensor::Clock& clock, sensor::Sink&
 }
 
 void Sensor::take(const DaqSample& sample, MonoTime requested_at, Instant now, sensor::Sink& sink) {
-  // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
-  // the next one: a delayed thread must not appear as a lull or a gust.
+  // The device counted at some moment since the request. If bus or scheduler delayed it, the count is kept for the next
+  // one: a delayed thread must not appear as a lull or a gust.
   const Nanoseconds doubt = now.mono - requested_at;
   const bool is_too_vague = kMinTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
   if (cup_.last_count && is_too_vague) return;

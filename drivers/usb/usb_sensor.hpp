@@ -69,10 +69,10 @@ class Sensor final : public sensor::ReopeningSensor {
   std::string name_;
   bool is_started_ = false;
   int failures_ = 0;             // rounds in a row
-  bool is_jumpy_ = false;        // the counter has jumped, and no window has closed well since
+  bool is_jumpy_ = false;        // the counter has jumped, and no window has closed correctly since
   std::size_t turn_ = 0;         // which of several that fit is tried
   MonoTime counted_at_{};        // the last count that was taken,
-  Nanoseconds counted_doubt_{};  // which may be so much older
+  Nanoseconds counted_doubt_{};  // which can be older by this
   decode::usb::CupState cup_;
   MeanDirection direction_;
 };

@@ -20,8 +20,8 @@ namespace yuragi::drivers::windlog {
 // Version 1, which can still be read: one table of readings of all sensors, with an index by time. A reader refuses
 // newer ones.
 
-/// What SQLite keeps beside a recording while it is open, by the end of its name; if one of them is left, the recorder
-/// was killed, and it holds the newest readings.
+/// Suffixes of SQLite's files beside an open recording; if one of them is left, the recorder was killed, and it
+/// contains the newest readings.
 inline constexpr std::string_view kWalSuffix = "-wal";
 inline constexpr std::array<std::string_view, 3> kSideSuffixes = {kWalSuffix, "-shm", "-journal"};
 
@@ -78,8 +78,8 @@ inline constexpr std::string_view kQuantityKeys = R"sql((  -- as decoded
   clock_ns INTEGER NOT NULL,  -- UTC less started_utc_ns + (time_ns - begin_ns), as in the tables of readings)sql";
 inline constexpr std::string_view kQuantityPrimaryKey = "\n  PRIMARY KEY (time_ns, series)\n) STRICT, WITHOUT ROWID";
 
-/// What a session wrote of each series, when it was closed: `yuragi verify` compares. A session that was not closed, or
-/// is of an older program, has no row. The checksum is SessionCount's.
+/// The counts of each series in a closed session, which `yuragi verify` compares. A session that was not closed, or is
+/// of an older program, has no row. The checksum is SessionCount's.
 inline constexpr std::string_view kSessionCountTable = "session_count";
 inline constexpr std::string_view kSessionCountColumns = R"sql((  -- written when the session was closed
   session  INTEGER NOT NULL,

@@ -29,7 +29,7 @@ std::vector<RecordingPart> completed_parts(const std::filesystem::path& recordin
 /// The files of a recording: its completed parts, oldest first, and the file that may still grow, if it exists.
 std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording);
 
-/// Is there such a recording: the file, or a completed part of it?
+/// Returns true if there is such a recording: the file, or a completed part of it.
 bool recording_exists(const std::filesystem::path& recording);
 
 }  // namespace yuragi::drivers::windlog

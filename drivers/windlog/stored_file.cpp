@@ -92,7 +92,7 @@ Result<void, Failure> check_is_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))
-    return Failure{file.string() + ": there is no such recording", FailureKind::kNoInput};
+    return Failure{file.string() + ": the recording does not exist", FailureKind::kNoInput};
   if (!std::filesystem::is_regular_file(status))
     return Failure{file.string() + ": is not a file", FailureKind::kBadData};
   return {};

@@ -18,7 +18,7 @@ struct StoredFile {
 /// Fails if there is no such file (kNoInput), or it is a folder or a device (kBadData).
 Result<void, Failure> check_is_file(const std::filesystem::path& file);
 
-/// Is it a file that a writer had created, and was killed before it wrote to it?
+/// Returns true if it is a file that a writer had created, and was killed before it wrote to it.
 bool is_blank_file(const std::filesystem::path& file);
 
 /// Opens a file of any version of the format that this one reads. As Reader::open(). A snapshot is read as it is

@@ -222,7 +222,7 @@ bool Verification::is_sound() const {
 
 Result<Verification, Failure> verify_recording(const std::filesystem::path& recording, Nanoseconds max_gap) {
   if (!recording_exists(recording)) {
-    return Failure{recording.string() + ": there is no such recording", FailureKind::kNoInput};
+    return Failure{recording.string() + ": the recording does not exist", FailureKind::kNoInput};
   }
   Verification verification;
   Seen seen;

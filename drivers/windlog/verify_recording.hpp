@@ -45,7 +45,7 @@ struct Verification {
 /// two. Lists gaps longer than `max_gap`; they are no damage. A series that is being recorded can be verified: each
 /// file is read as it is at one moment.
 ///
-/// Fails (kNoInput) if there is no such recording; damage is no failure. Realtime-safe: no.
+/// Fails (kNoInput) if the recording does not exist; damage is not a failure. Realtime-safe: no.
 Result<Verification, Failure> verify_recording(const std::filesystem::path& recording, Nanoseconds max_gap);
 
 }  // namespace yuragi::drivers::windlog

@@ -22,7 +22,7 @@ constexpr int kParts = 3;
 // A held reading is repeated no more often than this.
 constexpr Nanoseconds kMinHoldInterval = std::chrono::milliseconds(100);
 
-/// A difference of times from `duration_s`, which may be anything.
+/// A difference of times from `duration_s`, which can be anything.
 Nanoseconds wait_of(double duration_s) {
   const std::chrono::duration<double> wait(std::clamp(duration_s, -kMaxWait_s, kMaxWait_s));
   return std::chrono::round<Nanoseconds>(wait);
@@ -168,7 +168,7 @@ Result<void, Failure> Player::fetch() {
   return {};
 }
 
-/// Is there an upcoming reading? At the end it begins again, or is finished.
+/// Returns true if there is an upcoming reading. At the end it begins again, or is finished.
 Result<bool, Failure> Player::look_ahead(const Instant& now) {
   if (const auto fetched = fetch(); !fetched) return fetched.error();
   if (playing_.upcoming) return true;

@@ -18,7 +18,7 @@ Failure rewrite_failure(const sqlite::Database& database) {
   return {database.failure().message, FailureKind::kCannotCreate};
 }
 
-/// Is it a recording of a format that this program knows?
+/// Returns true if it is a recording of a format that this program knows.
 Result<void, Failure> check_is_recording(sqlite::Database& database) {
   const std::string name = database.file().string();
   const auto format = format_of(database);

@@ -13,7 +13,7 @@ namespace yuragi::drivers::windlog {
 /// Returns the new texts of a recording; nullopt: they stay.
 struct TextRewrite {
   std::function<std::optional<std::string>(const std::string& configuration)> configuration;  ///< of each session
-  /// Of each sensor of each session.
+  /// For each sensor of each session.
   std::function<std::optional<std::string>(const std::string& driver, const std::string& options)> options;
 };
 

@@ -11,7 +11,8 @@ namespace {
 
 // At the end a reader can make a writer wait, not for long.
 constexpr int kCloseTimeout_ms = 200;
-// So many nanoseconds are looked at for one that no other reading of the sensor has; then it is put after the last.
+// Limit of the search, in nanoseconds, for a time that no other reading of the sensor has; beyond it the reading is put
+// after the last.
 constexpr int kMaxTries = 16;
 
 std::int64_t nanoseconds(MonoTime time) {
@@ -37,7 +38,7 @@ std::string view_of(std::int64_t series) {
   return view;
 }
 
-/// Is it an empty database, or a recording that this version writes?
+/// Returns true for an empty database, and for a recording that this version writes.
 Result<bool, Failure> is_new(sqlite::Database& database) {
   const std::string name = database.file().string();
   const auto format = format_of(database);

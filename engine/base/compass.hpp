@@ -15,8 +15,8 @@ inline constexpr double kDegPerCompassPoint = 22.5;
 /// Thread-safe and realtime-safe.
 std::string_view nearest_compass_point(double direction_deg) noexcept;
 
-/// The direction of a point by its name, in capitals or not, 0 to 337.5 degrees: "wsw" is 247.5. None: no such point.
-/// Thread-safe and realtime-safe.
+/// The direction of a compass point, 0 to 337.5 degrees: "wsw" is 247.5; in capitals or not. Nullopt if the name is
+/// unknown. Thread-safe and realtime-safe.
 std::optional<double> compass_point_deg(std::string_view name) noexcept;
 
 }  // namespace yuragi

@@ -6,11 +6,11 @@
 
 namespace yuragi {
 
-/// Receives each exception that contain() has stopped: `kind` is what was being done, `what` the exception's text.
-/// Called on the thread where it happened.
+/// Receives each exception that contain() has stopped: `kind` names the work, `what` the exception's text. Called on
+/// the thread where it happened.
 using FaultReporter = void (*)(std::string_view kind, const char* what) noexcept;
 
-/// Sets who receives contained exceptions, for the whole process; null (at first): nobody. Thread-safe.
+/// Sets who receives contained exceptions, for the whole process; null (the default): nobody. Thread-safe.
 void report_faults_to(FaultReporter reporter) noexcept;
 
 /// Reports an exception that was contained. Thread-safe.
@@ -18,7 +18,7 @@ void report_fault(std::string_view kind, const char* what) noexcept;
 
 /// Calls `work`. An exception costs this one piece of work, never its thread: it is reported, and passed to `on_fault`
 /// as its text, valid for the call only. Every thread, and every handler of a listener, does its work in here. `kind`
-/// names the work for the log: a literal, since one line per kind is kept. Returns true if nothing was thrown.
+/// names the work for the log: a literal, because the log counts by kind. Returns true if nothing was thrown.
 /// Thread-safe. Costs nothing unless there is an exception.
 template <class Work, class OnFault>
 bool contain(std::string_view kind, Work&& work, OnFault&& on_fault) noexcept {

@@ -11,8 +11,7 @@ namespace yuragi {
 /// 0, and finite. The failure states what is allowed.
 Result<double, Failure> parse_duration_s(std::string_view text);
 
-/// Replaces such a text by its number of seconds, as a command line's parser transforms a value; returns what is wrong
-/// with it, or nothing.
+/// Replaces such a text by its number of seconds, for a command line's parser. Returns the error, or an empty text.
 std::string duration_to_seconds(std::string& text);
 
 }  // namespace yuragi

@@ -25,7 +25,7 @@ inline constexpr bool kIsOptional = false;
 template <class Type>
 inline constexpr bool kIsOptional<std::optional<Type>> = true;
 
-/// A value as the member's type.
+/// A value, converted to the member's type.
 template <class Member>
 void take(Member& member, const Parameter& parameter, const ParameterValue& value) {
   if constexpr (kIsOptional<Member>) {
@@ -44,7 +44,7 @@ void take(Member& member, const Parameter& parameter, const ParameterValue& valu
   }
 }
 
-/// The member within the parameter's limits; `otherwise` in place of what is no number, and of no enumerator.
+/// The member, limited to the parameter's range; `otherwise` if it is not a number, or not an enumerator.
 template <class Member>
 void limit(Member& member, const Parameter& parameter, const Member& otherwise) {
   if constexpr (std::is_enum_v<Member>) {
@@ -57,7 +57,7 @@ void limit(Member& member, const Parameter& parameter, const Member& otherwise) 
   }
 }
 
-/// The member that is reached from `settings` by one pointer after the other.
+/// The member reached from `settings` through the pointers in order.
 template <class Settings>
 Settings& follow(Settings& settings) noexcept {
   return settings;
@@ -67,7 +67,7 @@ auto& follow(Settings& settings, First first, Rest... rest) noexcept {
   return follow(std::invoke(first, settings), rest...);
 }
 
-/// What a function takes, as a ParameterValue holds it.
+/// A function's argument type, as a ParameterValue holds it.
 template <class Returned, class Argument>
 std::conditional_t<std::is_same_v<Argument, std::string_view>, std::string, std::remove_cvref_t<Argument>> argument_of(
     const std::function<Returned(Argument)>&);
@@ -82,14 +82,14 @@ constexpr auto member_of(Members... members) {
   };
 }
 
-/// A key of a table of settings, spelled once: what it is, and the member of S that its value fills. Of S only what the
-/// keys fill changes.
+/// A key of a table of settings, defined once: its description, and the member of S that its value fills. Only members
+/// with a key change.
 template <class S>
 class Field {
  public:
   /// `member`: of S, or a function that returns a reference into an S. Its type decides: numbers are converted, a word
-  /// becomes the enumerator at its place among the choices, texts and secrets are taken over, and an optional stays
-  /// empty while the key is left out.
+  /// becomes the enumerator at its place among the choices, texts and secrets are copied, and an optional stays empty
+  /// if the key is missing.
   template <class Member>
   Field(Parameter parameter, Member member)
       : parameter_(std::move(parameter)),
@@ -101,8 +101,8 @@ class Field {
           fields::limit(std::invoke(member, settings), description, std::invoke(member, otherwise));
         }) {}
 
-  /// `convert` makes the member of the value, which it takes in one of ParameterValue's types. It returns what is
-  /// assigned, or a Result whose error has a message: what is wrong, and what is allowed.
+  /// `convert` makes the member from the value, which it takes in one of ParameterValue's types. It returns the
+  /// member's value, or a Result whose error has a message: what is wrong, and what is allowed.
   template <class Member, class Convert>
   Field(Parameter parameter, Member member, Convert convert)
       : parameter_(std::move(parameter)),
@@ -143,8 +143,8 @@ class Fields {
 
   std::span<const Parameter> parameters() const noexcept { return parameters_; }
 
-  /// Fills the members of the values that are there, which ParameterValues::resolve() has checked. Returns what its
-  /// conversions refuse, with the keys; the members of these keys stay.
+  /// Fills the members from the present values, which ParameterValues::resolve() has checked. Returns the errors of
+  /// conversions, with their keys; the members of these keys keep their values.
   std::vector<ParameterError> fill(S& settings, const ParameterValues::Map& values) const {
     std::vector<ParameterError> errors;
     for (const Field<S>& field : fields_) {
@@ -164,8 +164,8 @@ class Fields {
     return settings;
   }
 
-  /// `settings` with each number within the limits of its key: for what came from outside. `otherwise` has what takes
-  /// the place of numbers that are not finite, and of enumerators that are none. Conversions' members stay.
+  /// Returns `settings` with each number within the limits of its key: for untrusted input. `otherwise` replaces
+  /// numbers that are not finite, and invalid enumerators. Members of conversions are unchanged.
   S within_limits(S settings, S otherwise) const {
     for (const Field<S>& field : fields_) {
       if (field.limit_) field.limit_(settings, field.parameter_, otherwise);

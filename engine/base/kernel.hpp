@@ -7,10 +7,10 @@
 
 // Kernel files are those that yuragi_kernel (config/cmake/Yuragi.cmake) compiles once a SIMD row.
 //
-// What stands in a kernel file: plain loops over raw pointers, in an anonymous namespace, and one constant table of
-// functions named by YURAGI_ROW_NAME. What it includes may only hold declarations, plain structs, and functions that
-// are always inlined (engine/math/trig.hpp). An ordinary inline function or template would be compiled in all
-// rows, and the linker keeps one of the copies, perhaps the AVX-512 one, for all rows.
+// Content of a kernel file: plain loops over raw pointers, in an anonymous namespace, and one constant table of
+// functions named by YURAGI_ROW_NAME. Its headers may contain only declarations, plain structs, and functions that are
+// always inlined (engine/math/trig.hpp). An ordinary inline function or template would be compiled in all rows, and the
+// linker keeps one of the copies, perhaps the AVX-512 one, for all rows.
 
 #define YURAGI_JOIN_TOKENS(left, right) left##_##right
 #define YURAGI_JOIN(left, right) YURAGI_JOIN_TOKENS(left, right)
@@ -18,7 +18,7 @@
 /// In a kernel file: `table` with the name of the row behind it, as in bend_kernels_x86_64_v3.
 #define YURAGI_ROW_NAME(table) YURAGI_JOIN(table, YURAGI_SIMD_ROW)
 
-/// In a header: declares the table of each row, of the struct `Table`.
+/// In a header: declares each row's table, of the struct `Table`.
 #define YURAGI_DECLARE_KERNEL_ROWS(Table, table) YURAGI_SIMD_ROWS(YURAGI_DECLARE_KERNEL_ROW, Table, table)
 #define YURAGI_DECLARE_KERNEL_ROW(row, printed, runnable, Table, table) extern const Table table##_##row;
 

@@ -16,7 +16,7 @@ bool is_equal_name(std::string_view one, std::string_view other) {
   return std::ranges::equal(one, other, {}, lower, lower);
 }
 
-/// Removes ":7480" from the end; nothing may stand between the host and it.
+/// Removes ":7480" from the end; only if it directly follows the host.
 std::string_view without_port(std::string_view host) {
   const std::size_t colon = host.rfind(':');
   const bool has_port = colon != std::string_view::npos && consists_of(host.substr(colon + 1), kDigits);

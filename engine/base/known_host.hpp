@@ -7,8 +7,8 @@
 namespace yuragi {
 
 /// Returns true if `host`, the "Host" field of an HTTP request with or without a port, is a name of this machine: a
-/// numeric address, localhost, one of `names`, or one of them followed by ".local". A web page that reached this
-/// machine under a name of its own (DNS rebinding) is refused by this. Pure.
+/// numeric address, localhost, one of `names`, or one of them followed by ".local". This refuses a web page that
+/// reached this machine under its own name (DNS rebinding). Pure.
 bool is_known_host(std::string_view host, std::span<const std::string> names);
 
 /// Returns true if `origin`, the "Origin" field of a request, is empty or names a page loaded from the same `host`.

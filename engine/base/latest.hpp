@@ -7,19 +7,18 @@
 
 namespace yuragi {
 
-/// A triple buffer: one writer hands the newest value to one reader; older values that were not read are lost, by
-/// intent.
+/// A triple buffer: one writer hands the newest value to one reader; older values that were not read are dropped.
 ///
 /// Ownership: holds three T. The writer fills writable() and calls publish(); the reader calls refresh() and reads
-/// value(). Neither ever waits for the other.
-/// Thread-safe: for one writer thread and one reader thread. Realtime-safe: yes; no allocation, no lock, no throw.
+/// value(). Neither ever waits for the other. Thread-safe: for one writer thread and one reader thread. Realtime-safe:
+/// yes; no allocation, no lock, no throw.
 template <class T>
 class Latest {
  public:
   Latest() = default;
   explicit Latest(const T& initial) : slots_{initial, initial, initial} {}
 
-  /// Writer: the slot to fill. Its old content is whatever was there some publications ago.
+  /// Writer: the slot to fill. It contains an older value.
   T& writable() noexcept { return slots_[write_]; }
 
   /// Writer: makes the slot the newest one and takes another to write to.
@@ -34,7 +33,7 @@ class Latest {
     publish();
   }
 
-  /// Reader: takes the newest value, if there is one not yet seen. True if value() changed.
+  /// Reader: takes the newest value. Returns true if value() changed.
   bool refresh() noexcept {
     if ((middle_.load(std::memory_order_acquire) & kFresh) == 0) return false;
     read_ = middle_.exchange(read_, std::memory_order_acq_rel) & kIndex;

@@ -10,8 +10,7 @@ struct Part {
   std::size_t index = 0;
   std::size_t count = 1;
 
-  /// The part's share of `units` things that stand in a row: where it begins, and where it ends. All parts together are
-  /// all units, and none comes twice.
+  /// The part's range of `units` elements: its begin and its end. The ranges of all parts cover every unit once.
   std::size_t begin(std::size_t units) const noexcept { return units * index / count; }
   std::size_t end(std::size_t units) const noexcept { return units * (index + 1) / count; }
 };

@@ -10,7 +10,7 @@ bool is_continuation(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0u) == 0x80u;
 }
 
-/// How many bytes the character has that begins with this byte; 0: no character begins with it.
+/// The length of the character that begins with this byte; 0: no character begins with it.
 std::size_t announced_bytes(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xC2 && first < 0xE0) return 2;
@@ -21,12 +21,12 @@ std::size_t announced_bytes(unsigned char first) {
 
 /// A character at the beginning of a text.
 struct Character {
-  std::size_t bytes = 0;  ///< 0: what is there is not UTF-8
+  std::size_t bytes = 0;  ///< 0: not UTF-8
   std::uint32_t code = 0;
 };
 
 Character first_character(std::string_view text) {
-  constexpr std::uint32_t kMinCode[] = {0, 0, 0x80, 0x800, 0x10000};  // by the number of bytes
+  constexpr std::uint32_t kMinCode[] = {0, 0, 0x80, 0x800, 0x10000};  // minimum code by the number of bytes
   const auto first = static_cast<unsigned char>(text.front());
   const std::size_t bytes = announced_bytes(first);
   if (bytes <= 1) return {bytes, first};

@@ -17,7 +17,7 @@ bool is_printable(std::string_view text);
 /// Returns true if `text` is valid UTF-8 (RFC 3629), control characters included. Thread-safe: yes.
 bool is_utf8(std::string_view text);
 
-/// The first `characters` of `text`, which is UTF-8, and "..." where there are more. Thread-safe: yes.
+/// The first `characters` of `text` (UTF-8), followed by "..." if there are more. Thread-safe: yes.
 std::string shortened(std::string_view text, std::size_t characters);
 
 }  // namespace yuragi

@@ -8,17 +8,17 @@
 
 namespace yuragi {
 
-/// What a function at a border returns when it can fail as a matter of course: the value, or why there is none.
-/// E is an enum where the caller decides by it, or Failure where a person reads it.
+/// The result of a function at a border that can be expected to fail: the value, or the reason for the failure. E is an
+/// enum if the caller decides by it, or Failure if a person reads it.
 template <class T, class E>
 using Result = boost::system::result<T, E>;
 
-/// What a failure is about, as far as programs differ by it: a command ends with another exit code for each.
+/// The kind of a failure, as far as programs distinguish it: a command has an exit code for each.
 enum class FailureKind : std::uint8_t {
   kOther,         ///< anything else
-  kUsage,         ///< what was asked for cannot be done
-  kBadData,       ///< an input that holds what it should not
-  kNoInput,       ///< an input file that is not there
+  kUsage,         ///< the request cannot be carried out
+  kBadData,       ///< an input with invalid content
+  kNoInput,       ///< an input file that does not exist
   kUnavailable,   ///< a device, a daemon or an address that is not to be had
   kCannotCreate,  ///< an output that cannot be written
 };
@@ -29,7 +29,7 @@ struct Failure {
   FailureKind kind = FailureKind::kOther;
 };
 
-/// A Failure as an exception: from set-up, where a constructor has no other way, and from Result::value().
+/// A Failure as an exception: for set-up, if a constructor has no other way, and from Result::value().
 class FailureError : public std::runtime_error {
  public:
   explicit FailureError(const Failure& failure) : std::runtime_error(failure.message), kind_(failure.kind) {}

@@ -11,7 +11,7 @@ bool holds_credentials(std::string_view text) noexcept {
   const std::string_view authority = text.substr(0, text.find_first_of("/?#"));
   const std::size_t at = authority.rfind('@');
   if (at == std::string_view::npos) return false;
-  // Without a scheme the text must be nothing else: an "@" and a ":" occur in other texts, too.
+  // Without a scheme the credentials must be the whole text, because "@" and ":" also occur in other texts.
   const bool is_whole = authority.size() == text.size() && authority.find_first_of(" \t") == std::string_view::npos;
   return authority.substr(0, at).find(':') != std::string_view::npos && (is_url || is_whole);
 }

@@ -6,11 +6,11 @@
 
 namespace yuragi {
 
-/// A text that is to be seen by nobody, such as a password. It has no conversion to a text, no formatter and no output
-/// operator: what is printed, recorded or sent of it is printable(). Thread-safe: as a std::string is.
+/// A text that must not be shown, such as a password. It has no conversion to a text, no formatter and no output
+/// operator: prints, recordings and messages contain printable(). Thread-safe: as a std::string is.
 class Secret {
  public:
-  /// What stands in its place where a configuration is printed or recorded.
+  /// Replaces the secret in printed or recorded configurations.
   static constexpr std::string_view kWithheld = "(secret)";
 
   Secret() = default;
@@ -18,13 +18,13 @@ class Secret {
 
   bool is_empty() const noexcept { return text_.empty(); }
 
-  /// Is it only kWithheld, read back from such a place? Then the secret is not known.
+  /// Returns true if it is only kWithheld, read back from such a configuration: then the secret is unknown.
   bool is_withheld() const noexcept { return text_ == kWithheld; }
 
-  /// Nothing where it is empty, else kWithheld.
+  /// Empty if the secret is empty, otherwise kWithheld.
   std::string_view printable() const noexcept { return is_empty() ? std::string_view() : kWithheld; }
 
-  /// The text itself, for the library that proves with it who we are, and for nothing else.
+  /// The text itself, only for the library that uses it to authenticate.
   const std::string& reveal() const noexcept { return text_; }
 
   friend bool operator==(const Secret&, const Secret&) = default;
@@ -33,7 +33,8 @@ class Secret {
   std::string text_;
 };
 
-/// Does a text hold a user's name and password, as in mqtt://user:password@host or user:password@host? Pure.
+/// Returns true if a text contains a user's name and password, as in mqtt://user:password@host or user:password@host.
+/// Pure.
 bool holds_credentials(std::string_view text) noexcept;
 
 }  // namespace yuragi

@@ -8,8 +8,8 @@
 namespace yuragi {
 
 /// Returns the secret in the text of a file: its one line, without the line end. Fails if the text is empty, has
-/// several lines or a zero byte. The failure's message is what is wrong with the file ("is empty"), and shows nothing
-/// of the text.
+/// several lines or a zero byte. The failure's message states what is wrong with the file ("is empty"), without its
+/// text.
 Result<Secret, Failure> secret_line(std::string text);
 
 }  // namespace yuragi

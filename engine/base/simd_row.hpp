@@ -20,20 +20,20 @@ inline constexpr SimdRow kBaseSimdRow{0};
 inline constexpr std::size_t kSimdRowCount = 0 YURAGI_SIMD_ROWS(YURAGI_COUNT_SIMD_ROW);
 #undef YURAGI_COUNT_SIMD_ROW
 
-/// From the base row to the widest.
+/// All rows, from the base row to the widest.
 inline constexpr std::array kSimdRows = [] {
   std::array<SimdRow, kSimdRowCount> rows{};
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = SimdRow{static_cast<std::uint8_t>(i)};
   return rows;
 }();
 
-/// As the compilers name it: "x86-64-v3", "aarch64".
+/// The compilers' name of it: "x86-64-v3", "aarch64".
 std::string_view name_of(SimdRow row);
 
 /// Can this machine run the row?
 bool is_runnable(SimdRow row);
 
-/// The widest row that is_runnable; chosen once, at the first call. Thread-safe.
+/// The widest row that this processor supports (is_runnable()); chosen once, at the first call. Thread-safe.
 SimdRow best_simd_row();
 
 }  // namespace yuragi

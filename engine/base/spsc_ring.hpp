@@ -7,7 +7,7 @@
 namespace yuragi {
 
 /// A bounded queue from one thread to one other, for streams in which every value matters: push() returns false when it
-/// is full, and the caller counts what it could not hand over.
+/// is full, and the caller counts the lost values.
 ///
 /// Thread-safe: for one producer and one consumer. Realtime-safe after construction: yes.
 template <class T>
@@ -18,7 +18,7 @@ class SpscRing {
   bool push(const T& value) { return queue_.push(value); }
   bool pop(T& value) { return queue_.pop(value); }
 
-  /// Hands each waiting value to `use`, oldest first; returns how many there were.
+  /// Passes each waiting value to `use`, oldest first; returns their number.
   template <class Use>
   std::size_t drain(Use&& use) {
     return queue_.consume_all(use);

@@ -4,10 +4,10 @@
 
 namespace yuragi {
 
-// Nothing in the engine reads a clock: time comes in as a parameter, in these types.
+// The engine reads no clock: time is a parameter, of these types.
 
 using Nanoseconds = std::chrono::nanoseconds;
-/// A moment that only ever grows; its zero means nothing. All intervals and ages are measured on it.
+/// A monotonic moment with an arbitrary zero. All intervals and ages are measured on it.
 using MonoTime = std::chrono::time_point<std::chrono::steady_clock, Nanoseconds>;
 /// A moment for people and files. It may jump either way when a machine's clock is set.
 using UtcTime = std::chrono::sys_time<Nanoseconds>;

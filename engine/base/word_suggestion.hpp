@@ -7,12 +7,12 @@
 
 namespace yuragi {
 
-/// The known word that was perhaps meant: the one with the fewest slips (a letter too many, missing, wrong, or two
+/// The known word that was probably meant: the one with the fewest errors (a letter too many, missing, wrong, or two
 /// neighbours exchanged: the optimal string alignment distance), if they are few for its length; else empty.
 std::string_view suggest_word(std::string_view word, std::span<const std::string> known);
 
-/// The message about arguments that nothing takes, in their order: 'unexpected argument:
-/// "runn"; did you mean "run"?'. Empty for none.
+/// The message about unexpected arguments, in their order: 'unexpected argument: "runn"; did you mean "run"?'. Empty if
+/// there are none.
 std::string unexpected_arguments_text(std::span<const std::string> arguments, std::span<const std::string> known);
 
 /// The same of a command line that a CLI::App could not parse: the arguments that it did not take, compared with the

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxSize = std::size_t{1} << 22U;
 constexpr std::size_t kMaxSamples = std::size_t{1} << 31U;
 
-/// FFTW's planner keeps state of its own: making and destroying plans takes turns. Executing them needs no lock.
+/// FFTW's planner has global state: creating and destroying plans needs a lock. Executing them does not.
 std::mutex& planner_mutex() {
   static std::mutex mutex;
   return mutex;

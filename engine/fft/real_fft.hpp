@@ -23,8 +23,8 @@ namespace yuragi::fft {
 /// and destruction hold a lock). Realtime-safe: forward() and inverse() are; construction and destruction are not.
 class RealFft {
  public:
-  /// Throws std::invalid_argument if dims is not 1 to 3, size is 0 or above 2^22, or there would be more than 2^31
-  /// samples; std::bad_alloc without memory.
+  /// Throws std::invalid_argument if dims is not 1 to 3, size is 0 or above 2^22, or there are more than 2^31 samples;
+  /// std::bad_alloc without memory.
   RealFft(int dims, std::size_t size);
   ~RealFft();
   RealFft(RealFft&&) noexcept;

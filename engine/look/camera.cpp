@@ -12,7 +12,7 @@
 namespace yuragi::look {
 namespace {
 
-constexpr double kFarthest_m = 1000.0;  // as far as scenes may stand
+constexpr double kFarthest_m = 1000.0;  // maximum distance of scenes
 
 const Camera& default_camera() {
   static const Camera camera;
@@ -173,7 +173,7 @@ Camera within_limits(const Camera& camera) {
 }
 
 std::size_t camera_at(std::span<const Camera> cameras, double hour) {
-  // Of two with the same time the first.
+  // If two have the same time, the first is used.
   constexpr double kDay_h = 24.0;
   std::size_t found = 0;
   double least_ago_h = 2.0 * kDay_h;

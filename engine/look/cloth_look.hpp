@@ -8,7 +8,7 @@
 
 namespace yuragi::look {
 
-/// A colour as screens have it (sRGB).
+/// A screen's color (sRGB).
 struct Color {
   std::uint8_t red = 0, green = 0, blue = 0;
   friend bool operator==(const Color&, const Color&) = default;
@@ -24,9 +24,9 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-/// What a flag, a banner or a curtain looks like, as an installation wants it.
+/// The configured look of a flag, a banner or a curtain.
 struct ClothLook {
-  std::optional<Color> color = std::nullopt;     ///< of the cloth; alone: plain. Nothing: the viewer's own
+  std::optional<Color> color = std::nullopt;     ///< of the cloth; alone: plain. Nullopt: the viewer's own
   std::optional<Color> color_2 = std::nullopt;   ///< of its pattern
   std::shared_ptr<const Image> image = nullptr;  ///< covers all of it
 

@@ -177,7 +177,7 @@ Result<Look, ParameterError> edited(const Look& look, std::span<const std::strin
     }
     given.insert_or_assign(name, parameter == parameters.end() ? ParameterValue(text) : typed_value(*parameter, text));
   }
-  // Checked as a whole, and applied without the defaults of what was not given.
+  // Checked as a whole, and applied without defaults for missing values.
   auto checked = ParameterValues::resolve(parameters, given);
   if (!checked) return checked.error();
   return changed(look, given);

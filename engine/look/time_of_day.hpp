@@ -5,7 +5,7 @@
 
 namespace yuragi::look {
 
-/// A time of the day in hours, 0 to 24, of the text "06:30"; nothing where it is none.
+/// The hours, 0 to 24, of the text "06:30"; nullopt if it is not a time.
 std::optional<double> time_of_day_h(std::string_view text) noexcept;
 
 }  // namespace yuragi::look

@@ -8,16 +8,15 @@ namespace yuragi::math {
 /// oscillator q'' + 2 w q' + w^2 (q - target) = 0, stepped exactly.
 ///
 /// The step is the closed-form solution for a target that is constant during it, so it is unconditionally stable, a
-/// long step ends where many short ones do, and value and rate are continuous however the target jumps. From rest, a
-/// target that steps by e moves the value by at most e w / exp(1) (0.37 e w) per second.
-/// Units: the value's own, and per second. Finite for finite input (numbers up to 1e100).
-/// Thread-safe: no; one owner. Realtime-safe: yes.
+/// long step has the result of many short ones, and value and rate are continuous even if the target jumps. From rest,
+/// a target that steps by e moves the value by at most e w / exp(1) (0.37 e w) per second. Units: the value's own, and
+/// per second. Finite for finite input (numbers up to 1e100). Thread-safe: no; one owner. Realtime-safe: yes.
 struct CriticallyDamped {
   double value = 0.0;
   double rate_per_s = 0.0;
 
   /// Advances by dt_s toward `target`. A larger omega_rad_s (at least 0) follows faster: after 4.75 / omega_rad_s, 95 %
-  /// of a step is done. Time that does not go on (dt_s not above 0) changes nothing.
+  /// of a step is done. A dt_s of 0 or less changes nothing.
   void step(double target, double omega_rad_s, double dt_s) noexcept {
     if (!(dt_s > 0.0)) return;
     const double phase = omega_rad_s * dt_s;
@@ -38,7 +37,7 @@ struct CriticallyDamped {
   }
 
  private:
-  /// exp(-700) is 1e-304: nothing is left of any distance.
+  /// exp(-700) is 1e-304: the remaining distance is negligible.
   static constexpr double kArrived = 700.0;
 };
 

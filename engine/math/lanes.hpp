@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 
-// Many floats at once, as many as a register of the SIMD row holds that a kernel file is compiled for
-// (engine/base/kernel.hpp). For kernels whose values must stay in registers through a loop; where that does not matter,
-// a plain loop over floats is vectorised just as well and reads more easily. Arithmetic is lane by lane, with the same
-// bits as for single floats. A comparison gives a mask that ?: takes.
+// As many floats as a register holds of the SIMD row for which a kernel file is compiled (engine/base/kernel.hpp). For
+// kernels whose values must stay in registers through a loop; otherwise a plain loop over floats is vectorised just as
+// well and reads more easily. Arithmetic is lane by lane, with the same bits as for single floats. A comparison returns
+// a mask that ?: takes.
 //
-// For kernel files alone: in each row Lanes is another type.
+// For kernel files only: Lanes is a different type in each row.
 
 namespace yuragi::math {
 

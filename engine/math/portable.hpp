@@ -26,7 +26,7 @@ inline double cube_root(double x) noexcept {
   return std::pow(x, 1.0 / 3.0);
 }
 
-/// 2^x and 10^x. std::pow(2, x) and std::pow(10, x) are other functions by clang (exp2, exp10) than by gcc.
+/// 2^x and 10^x. std::pow(2, x) and std::pow(10, x) become different functions in clang (exp2, exp10) and in gcc.
 inline double power_of_two(double x) noexcept {
   return std::exp(x * std::numbers::ln2);
 }

@@ -41,7 +41,7 @@ template <class Bits = std::uint32_t, class Number>
   const Bits quadrant = __builtin_bit_cast(Bits, shifted);
   const Number quarters = shifted - kRound;
 
-  // What is left, within pi/4. pi/2 comes in two parts: the first has 17 bits, so its product is exact.
+  // The remaining angle, within pi/4. pi/2 is split into two parts: the first has 17 bits, so its product is exact.
   constexpr float kHalfPiHigh = 0x1.921fp0F;
   constexpr float kHalfPiLow = 0x1.6a8886p-17F;
   const Number x = (angle_rad - quarters * kHalfPiHigh) - quarters * kHalfPiLow;

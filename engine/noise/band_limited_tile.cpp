@@ -13,7 +13,7 @@
 namespace yuragi::noise {
 namespace {
 
-/// What is left of a wave of k cycles an edge where waves of `end` and more are removed.
+/// The remaining share of a wave of k cycles an edge when waves of `end` and more are removed.
 double passed(double k, double end) noexcept {
   if (k >= end) return 0.0;
   if (k <= 0.5 * end) return 1.0;
@@ -32,7 +32,7 @@ Tile2 without_waves_from(double end, const Tile2& base, fft::RealFft& fft) {
   }
   fft.inverse();
 
-  // There and back multiplies by the number of samples.
+  // The transform and its inverse multiply by the number of samples.
   const Standard scale{0.0, 1.0 / static_cast<double>(base.values.size())};
   return {base.size, values_on_grid(fft.samples(), scale)};
 }
@@ -55,8 +55,8 @@ double BandLimitedTile2::end_cycles(std::size_t index) const noexcept {
 }
 
 BandPick BandLimitedTile2::pick(double speed_m_s, double rate_hz, double period_m) const noexcept {
-  // What is shown ends below rate period / (2 speed) cycles an edge. A level is left for the next over the octave
-  // before it, and is gone when its finest waves would not be shown.
+  // Waves are shown up to rate period / (2 speed) cycles an edge. Over the octave before that, a level is replaced by
+  // the next.
   const double shown_per_end = rate_hz * period_m / (2.0 * speed_m_s * end_cycles(0));
   const auto last = static_cast<double>(levels_.size() - 1);
   const double place = shown_per_end > 2.0 ? 0.0 : std::clamp(1.0 - std::log2(shown_per_end), 0.0, last);

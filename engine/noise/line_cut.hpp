@@ -4,14 +4,13 @@
 
 namespace yuragi::noise {
 
-/// A way over a torus along a line of golden slope, and so a 1-D noise that never visibly repeats: read a 2-D tile
-/// where the line has got to (Chiba, section 2-2 (2), figure 4a).
+/// A path over a torus along a line of golden slope, which makes a 1-D noise that never visibly repeats: read a 2-D
+/// tile at the line's present place (Chiba, section 2-2 (2), figure 4a).
 ///
-/// The line goes 0.851 east and 0.526 south a metre. Between coming round in x for the n-th time and where it was, it
-/// misses itself in z by at least 0.38 / n of the period, for no number is farther from all fractions than the golden
-/// one: on a tile of 512 samples it first comes within a sample of itself after 233 times around, 274 periods of way.
-/// Fixed point: a step is rounded to 2^-32 of the period and its rest kept, as TorusTravel does. Thread-safe: no.
-/// Realtime-safe: yes.
+/// The line goes 0.851 east and 0.526 south a metre. When it returns in x for the n-th time it is at least 0.38 / n of
+/// the period beside its old place in z, because the golden number is the farthest from all fractions: on a tile of 512
+/// samples it first comes within a sample of itself after 233 times around, 274 periods of path. Fixed point: a step is
+/// rounded to 2^-32 of the period and its rest kept, as TorusTravel does. Thread-safe: no. Realtime-safe: yes.
 class LineCut {
  public:
   /// The line's direction: cos and sin of the angle whose tangent is 1 / phi.
@@ -24,11 +23,11 @@ class LineCut {
     z_.add(distance_m * kSouth, period_m);
   }
 
-  /// Where the line has got to: read_noise(tile, cut.phase()).
+  /// The line's present place: read_noise(tile, cut.phase()).
   TorusPhase phase() const noexcept { return {x_.phase(), z_.phase()}; }
 
-  /// How far apart on the torus two places of the line are that are `distance_m` of way apart. What was read
-  /// `distance_m` ago is at phase() - apart(distance_m, period_m). Not for the long way itself: each call rounds once.
+  /// The difference on the torus of two places of the line that are `distance_m` apart along it. The place of
+  /// `distance_m` ago is phase() - apart(distance_m, period_m). Not for accumulating: each call rounds once.
   static TorusPhase apart(double distance_m, double period_m) noexcept {
     return {torus_phase(distance_m * kEast, period_m), torus_phase(distance_m * kSouth, period_m)};
   }

@@ -28,7 +28,7 @@ bool is_left_out(std::int64_t x, std::int64_t z, std::int64_t y, std::int64_t ha
   return x == half || std::abs(z) == half || std::abs(y) == half || (x == 0 && z == 0 && y == 0);
 }
 
-/// Between which samples a place is, in periods, on an axis of so many.
+/// The two samples next to a place, given in periods, on an axis of `size` samples.
 struct Between {
   std::size_t first, second;
   double fraction;
@@ -36,7 +36,7 @@ struct Between {
 Between samples_at(double place, std::size_t size) noexcept {
   const double sample = (place - std::floor(place)) * static_cast<double>(size);
   const double whole = std::floor(sample);
-  const std::size_t first = static_cast<std::size_t>(whole) % size;  // a place just below 0 can round up to the end
+  const std::size_t first = static_cast<std::size_t>(whole) % size;  // a place just below 0 can round to the end
   return {first, (first + 1) % size, sample - whole};
 }
 
@@ -67,7 +67,7 @@ MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField
   if (check_noise(dims, {.size = size})) throw std::invalid_argument(std::string(explain(Error::kSizeNotAllowed)));
   if (fields.empty()) throw std::invalid_argument("a moving noise must have at least one field");
 
-  // All fields turn alike: their modes are independent of each other all the same.
+  // All fields turn in the same way: their modes are still independent of each other.
   const std::vector<std::int8_t> signs = turning_signs(fft_, fields[0].seed);
   turns_.reserve(signs.size());
   for (std::size_t i = 0; i < signs.size(); ++i) {
@@ -88,8 +88,8 @@ MovingNoise::Field MovingNoise::make_field(const MovingField& wanted) {
     fill_modes(fft_, seed, [&](std::int64_t x, std::int64_t z, std::int64_t y) {
       if (is_left_out(x, z, y, half)) return 0.0;
       const double power = wanted.power(static_cast<double>(x), static_cast<double>(z), static_cast<double>(y));
-      field.variance += 2.0 * power;          // each mode that is drawn stands for its mirror image as well
-      return share * std::sqrt(0.5 * power);  // of the real part and of the imaginary part
+      field.variance += 2.0 * power;          // each drawn mode also counts for its mirror image
+      return share * std::sqrt(0.5 * power);  // standard deviation of the real and of the imaginary part
     });
   };
   draw(wanted.seed, std::sqrt(1.0 - wanted.likeness * wanted.likeness));

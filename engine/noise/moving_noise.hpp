@@ -12,56 +12,56 @@
 
 namespace yuragi::noise {
 
-/// What share of the variance a wave of the full spectrum has: its wave numbers in cycles an edge (z is 0 and below
-/// as well as above, and so are the others), the answer 0 or above and even, the same at k and -k.
+/// The share of the variance of a wave in the full spectrum, from its wave numbers in cycles an edge (all of them can
+/// be negative). Must be 0 or more and even, the same at k and -k.
 using WavePower = std::function<double(double cycles_x, double cycles_z, double cycles_y)>;
 
 /// One of the fields of a MovingNoise.
 struct MovingField {
   WavePower power;
   std::uint64_t seed = 0;
-  /// How much each of its modes is like the mode of the same wave in a field of `like_seed`, -1 to 1: their
-  /// correlation. Its power is the same for every likeness.
+  /// Correlation of each of its modes with the mode of the same wave in a field of `like_seed`, -1 to 1. Its power does
+  /// not depend on it.
   double likeness = 0.0;
   std::uint64_t like_seed = 0;
 };
 
-/// Of two fields of a MovingNoise, on average over seeds: the variance of each, and their covariance if the likeness
-/// were 1, which is the root of the product of the two only where they have it in the same waves.
+/// For two fields of a MovingNoise, on average over seeds: the variance of each, and their covariance for a likeness of
+/// 1. This is the root of the product of the variances only if both have it in the same waves.
 struct SharedVariance {
   double one = 0.0, other = 0.0;
   double common = 0.0;
 };
-/// Asks each power about size^dims / 2 times. `dims` and `size` as in MovingNoise.
+/// Evaluates each power about size^dims / 2 times. `dims` and `size` as in MovingNoise.
 SharedVariance shared_variance(int dims, std::size_t size, const WavePower& one, const WavePower& other);
 
-/// Several periodic noises of any spectrum on one square or cube, carried together to any place, with their eddies
-/// turned as far as is wanted: each mode is
+/// Several periodic noises of any spectrum on one square or cube, moved together to any place, with their eddies turned
+/// by any angle: each mode is
 ///
 ///     F_k exp(-i (k . X + s_k turn |k|^(2/3))),
 ///
-/// X how far all of it has been carried, s_k a random sign with s_-k = -s_k (no drift), |k| in cycles an edge. One
-/// inverse transform a field and moment: no place is interpolated by being carried, and time may go either way.
+/// X the displacement, s_k a random sign with s_-k = -s_k (no drift), |k| in cycles an edge. One
+/// inverse transform a field and moment: moving needs no interpolation, and time can go either way.
 ///
 /// A field is Gaussian, of mean 0; its variance is, on average over seeds, the sum of its powers. Waves with two
-/// samples on an axis are left out, since they cannot be carried by a part of a sample, and so is the constant one.
-/// Same settings, same bits. Owns its modes and samples: 8 bytes a sample and field, and 20 a sample besides.
-/// Thread-safe: reading, yes. Realtime-safe: no; 256 x 256 takes a few milliseconds a field, 128 x 128 x 128 a tenth of
-/// a second. Source: Taylor 1938 (k . X), engine/METHOD.md M6 (turning).
+/// samples on an axis are omitted, because they cannot be moved by a part of a sample, and so is the constant one. Same
+/// settings, same bits. Owns its modes and samples: 8 bytes a sample and field, and 20 more a sample. Thread-safe:
+/// reading, yes. Realtime-safe: no; 256 x 256 takes a few milliseconds a field, 128 x 128 x 128 a tenth of a second.
+/// Source: Taylor 1938 (k . X), engine/METHOD.md M6 (turning).
 class MovingNoise {
  public:
   /// `dims` 2 or 3, `size` a power of two that make_noise_2d or make_noise_3d allows. Throws std::invalid_argument,
-  /// std::bad_alloc. All fields stand at X = 0, turn = 0.
+  /// std::bad_alloc. All fields start at X = 0, turn = 0.
   MovingNoise(int dims, std::size_t size, std::span<const MovingField> fields);
 
-  /// How far all fields are carried, in periods along x, z and y, and how far their eddies turned, rad for the waves
-  /// as long as an edge.
+  /// Moves all fields to a displacement, in periods along x, z and y, and turns their eddies by `turn_rad`, which is
+  /// the turn of waves as long as an edge.
   void move_to(std::array<double, 3> carried, double turn_rad) noexcept;
 
   /// The samples of a field, as a Tile2 or Tile3 lays them out. move_to() changes them.
   std::span<const float> samples(std::size_t field) const noexcept { return fields_[field].samples; }
 
-  /// The noise at a place in periods along x, z and y (finite), linear between samples. In two dimensions y is nothing.
+  /// The noise at a place in periods along x, z and y (finite), linear between samples. In two dimensions y is ignored.
   double read(std::size_t field, std::array<double, 3> place) const noexcept;
 
   int dims() const noexcept { return fft_.dims(); }

@@ -13,7 +13,7 @@ namespace {
 
 using Mode = std::complex<double>;
 
-/// A mode's own place in the random stream: its signed wave numbers side by side, 24, 24 and 16 bits.
+/// A mode's index in the random stream: its signed wave numbers packed into 24, 24 and 16 bits.
 std::uint64_t address_of(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) noexcept {
   constexpr std::uint64_t kMask = (std::uint64_t{1} << 24U) - 1;
   return (static_cast<std::uint64_t>(wave_x) & kMask) | ((static_cast<std::uint64_t>(wave_z) & kMask) << 24U) |
@@ -28,7 +28,7 @@ bool is_in_band(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y, d
 
 }  // namespace
 
-/// With it the integral scale of a line cut is that of the spec (engine/METHOD.md M2).
+/// The corner for which the integral scale of a line cut is that of the spec (engine/METHOD.md M2).
 double corner_cycles(double integral_scale) noexcept {
   return 1.0 / (2.0 * std::numbers::pi * kVonKarmanCorner * integral_scale);
 }
@@ -87,8 +87,8 @@ void fill_modes(fft::RealFft& fft, std::uint64_t seed,
       const auto wave_x = static_cast<std::int64_t>(x);
       Mode& mode = spectrum[index * columns + x];
 
-      // In the first and the middle column a mode's mirror image stands in the same column: the second of the two
-      // is the conjugate of the first, which this loop has already set.
+      // In the first and the middle column a mode's mirror image is in the same column: the second of the two is the
+      // conjugate of the first, which this loop has already set.
       const bool mirrored_here = x == 0 || x == half;
       if (mirrored_here && row.mirror < index) {
         mode = std::conj(spectrum[row.mirror * columns + x]);
@@ -128,7 +128,7 @@ std::vector<std::int8_t> turning_signs(const fft::RealFft& fft, std::uint64_t se
     const SpectrumRow row = spectrum_row(index, fft.size(), fft.dims());
     for (std::size_t x = 0; x < columns; ++x) {
       if (!is_in_band(static_cast<std::int64_t>(x), row.wave_z, row.wave_y, from_cycles, to_cycles)) continue;
-      // In the first and the middle column a mode's mirror image, its conjugate, stands in the same column.
+      // In the first and the middle column a mode's mirror image, its conjugate, is in the same column.
       const std::size_t i = index * columns + x;
       const bool mirrored_here = x == 0 || x == half;
       if (mirrored_here && row.mirror <= row.index) {

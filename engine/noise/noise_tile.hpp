@@ -7,14 +7,14 @@
 namespace yuragi::noise {
 
 /// A periodic noise on a line: size() samples, the last followed by the first. Mean 0, variance 1 (to rounding).
-/// Values stand on a grid of 2^-20, so that they are the same on every machine.
+/// Values are multiples of 2^-20, so that they are the same on every machine.
 struct Tile1 {
   std::vector<float> values;
 
   std::size_t size() const { return values.size(); }
 };
 
-/// A periodic noise on a square torus: size x size samples, a row (along x) after the other (along z).
+/// A periodic noise on a square torus: size x size samples, stored in rows (along x), one after the other (along z).
 struct Tile2 {
   std::size_t size = 0;
   std::vector<float> values;

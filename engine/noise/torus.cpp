@@ -10,13 +10,13 @@ namespace {
 
 constexpr double kPhasesPerPeriod = 4294967296.0;  // 2^32
 
-/// A distance in units of the phase, whole periods left out: at most half of 2^32 either way.
+/// A distance in units of the phase, without whole periods: at most half of 2^32 in either direction.
 double phases_in(double distance_m, double period_m) noexcept {
   const double periods = distance_m / period_m;
   return (periods - std::nearbyint(periods)) * kPhasesPerPeriod;
 }
 
-/// A whole number as a phase; negative ones count back from 2^32.
+/// An integer as a phase; negative ones count back from 2^32.
 std::uint32_t wrapped(double whole) noexcept {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(whole));
 }

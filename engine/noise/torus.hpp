@@ -25,9 +25,8 @@ std::uint32_t torus_phase(double position_m, double period_m) noexcept;
 
 /// How far something has moved along one axis of a torus: the integral of its velocity.
 ///
-/// Each step is rounded to a phase, and what rounding left over goes into the next step: after any number of steps the
-/// phase is that of their sum to about one part in 2^32 of the period, and never drifts.
-/// Thread-safe: no. Realtime-safe: yes.
+/// Each step is rounded to a phase, and the remainder is added to the next step: after any number of steps the phase is
+/// that of their sum to about one part in 2^32 of the period, and never drifts. Thread-safe: no. Realtime-safe: yes.
 class TorusTravel {
  public:
   /// Moves on by `distance_m` (finite) on an axis of period `period_m` (above 0).
@@ -37,7 +36,7 @@ class TorusTravel {
 
  private:
   std::uint32_t phase_ = 0;
-  double remainder_ = 0.0;  ///< in units of the phase, at most 0.5 either way
+  double remainder_ = 0.0;  ///< in units of the phase, at most 0.5 in either direction
 };
 
 /// How far a field has moved on its torus: the shifting operator's f(n).

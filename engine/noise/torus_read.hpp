@@ -3,11 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 
-// How a tile is read, for kernel files and torus.cpp alike: always inlined, as engine/base/kernel.hpp asks.
+// Reads a tile, for kernel files and torus.cpp: always inlined, as engine/base/kernel.hpp requires.
 
 namespace yuragi::noise {
 
-/// Where between which samples a phase is, on an axis of 2^log2_size samples.
+/// The two samples next to a phase and the position between them, on an axis of 2^log2_size samples.
 struct TorusCell {
   std::uint32_t first;
   std::uint32_t second;  ///< the one behind the first, around the torus
@@ -17,7 +17,7 @@ struct TorusCell {
 [[gnu::always_inline]] inline TorusCell torus_cell(std::uint32_t phase, unsigned log2_size) noexcept {
   const std::uint32_t first = phase >> (32U - log2_size);
   const std::uint32_t second = (first + 1U) & ((1U << log2_size) - 1U);
-  // The highest 24 bits below the sample's number: as many as a float holds exactly.
+  // The 24 highest bits below the sample's number: as many as a float holds exactly.
   const auto below = static_cast<std::int32_t>((phase << log2_size) >> 8U);
   return {first, second, static_cast<float>(below) * 0x1p-24F};
 }
@@ -26,8 +26,8 @@ struct TorusCell {
   return first + fraction * (second - first);
 }
 
-/// The four samples around a place on a torus of 2^log2_size rows (along x) of 2^log2_size samples, and where between
-/// them it is.
+/// The four samples around a place on a torus of 2^log2_size rows (along x) of 2^log2_size samples, and the position
+/// between them.
 struct TorusCorners {
   std::uint32_t north_west, north_east, south_west, south_east;
   float fraction_x, fraction_z;

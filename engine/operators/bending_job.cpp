@@ -12,7 +12,7 @@ namespace {
 
 constexpr KernelRows<BendingKernels> kBendingRows = YURAGI_KERNEL_ROWS(bending_kernels);
 constexpr double kMinHalfBendSpeed_m_s = 0.01;
-constexpr double kStrongestWind = 1e9;  ///< in half-bend speeds: beyond it nothing bends any further
+constexpr double kStrongestWind = 1e9;  ///< in half-bend speeds: a stronger wind has no further effect
 
 }  // namespace
 
@@ -34,7 +34,7 @@ BendingJob::Problem BendingJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
 
-  // Speed and direction of the wind; calm has no direction, and needs none.
+  // Speed and direction of the wind; calm air has no direction, and needs none.
   const double speed_m_s = std::sqrt(wind_east_m_s * wind_east_m_s + wind_south_m_s * wind_south_m_s);
   const double per_speed = speed_m_s > 0.0 ? max_bend_rad / speed_m_s : 0.0;
   kBendingRows[row.value_or(best_simd_row())].bend(

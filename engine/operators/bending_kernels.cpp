@@ -7,11 +7,11 @@
 namespace yuragi::operators {
 namespace {
 
-/// In half-bend speeds: so strong that the bend is at its largest, and so weak that its square is a number.
+/// In half-bend speeds: limits at which the bend is at its maximum, and below which the square would underflow.
 constexpr float kLargest = 1e9F;
 
 void bend(const BendingKernelArguments& in) noexcept {
-  // Copies, so that no store to the outputs can be taken for a change of them.
+  // Copies, so that the compiler knows that stores to the outputs do not change them.
   const BendingKernelArguments arguments = in;
   const float* const strength = arguments.strength;
   const float* const flexibility = arguments.flexibility;

@@ -19,7 +19,7 @@ constexpr float kAtRest_m = 2e-5F;
 constexpr float kAtRest_m_s = 2e-4F;
 constexpr float kTiniest_m_s = 1e-6F;
 
-/// Of a spring: times the substep squared it stays far below 4, where explicit steps would no longer be stable.
+/// Of a spring: times the substep squared it is far below 4, above which explicit steps are unstable.
 constexpr double kStiffest_s2 = 0.2 / (kMaxSubstep_s * kMaxSubstep_s);
 
 /// The value at a place between two columns' values.
@@ -38,7 +38,7 @@ double edge_length_m(std::span<const float> x_m, std::span<const float> y_m, std
   return std::sqrt(way(x_m) * way(x_m) + way(y_m) * way(y_m) + way(z_m) * way(z_m));
 }
 
-/// As many columns as are about `apart_m` from one another.
+/// The number of columns for a distance of about `apart_m`.
 std::size_t coarse_columns(std::size_t columns, double edge_m, double apart_m) {
   const auto most = static_cast<double>(std::min(columns, CoarseCloth::kMaxColumns));
   return static_cast<std::size_t>(std::clamp(std::nearbyint(edge_m / apart_m) + 1.0, 2.0, most));
@@ -76,7 +76,7 @@ CoarseCloth::CoarseCloth(const ClothThreads& threads, std::size_t columns, std::
       predicted_m_(3 * rows_ * stride_, 0.0F),
       speed_m_s_(3 * rows_ * stride_, 0.0F),
       lean_(2 * (rows_ - 1) * stride_, 0.0F) {
-  // What the threads are at the coarse columns, ghosts as their neighbours.
+  // The threads' values at the coarse columns; ghosts have those of their neighbours.
   const double links_in_one = static_cast<double>(threads.links) / static_cast<double>(rows_ - 1);
   const std::span<const float> fine(threads.rest_end_m);
   const auto fine_place = [&](std::size_t i) {
@@ -93,7 +93,7 @@ CoarseCloth::CoarseCloth(const ClothThreads& threads, std::size_t columns, std::
         static_cast<float>(links_in_one * between_columns(fine.subspan(2 * threads.stride, columns), at));
   }
 
-  // To the bit as long as the kernel finds a link that is at rest.
+  // Exact, so that the kernel recognises a link at rest.
   for (std::size_t i = 0; i < stride_; ++i) {
     const float x_m = rest_link_m_[i];
     const float y_m = rest_link_m_[stride_ + i];
@@ -101,7 +101,7 @@ CoarseCloth::CoarseCloth(const ClothThreads& threads, std::size_t columns, std::
     rest_length_m_[i] = std::sqrt(x_m * x_m + (y_m * y_m + z_m * z_m));
   }
 
-  // From the column before to that behind, for the normals.
+  // From the previous to the next column, for the normals.
   for (std::size_t i = 1; i + 1 < stride_; ++i) {
     const std::span<const float> edges[] = {edge_x_m, edge_y_m, edge_z_m};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -135,13 +135,13 @@ ClothDynamicsJob::Problem ClothDynamicsJob::run() const noexcept {
   const double substeps = std::max(std::ceil(tick_s / kMaxSubstep_s - 1e-6), 1.0);
   const double substep_s = tick_s / substeps;
 
-  // The tension of a link of a hanging thread, a point's weight below; where the links are so short that it would be
-  // too stiff, all of it is less.
+  // The tension of a link of a hanging thread, from the weight below it; if the links are so short that it would be too
+  // stiff, all tensions are reduced.
   const auto links = static_cast<double>(cloth->links());
   const double weight_s2 = std::min(kGravity_m_s2 / static_cast<double>(cloth->link_length_m()), kStiffest_s2 / links);
   const std::size_t stride = cloth->stride();
 
-  // The skin's drag, implicit as well: the speed past is nearly the air's.
+  // The skin's drag, also implicit: the relative speed is nearly the air's.
   for (std::size_t i = 0; i < stride; ++i) {
     const auto east_m_s = static_cast<double>(air_east_m_s[i]);
     const auto south_m_s = static_cast<double>(air_south_m_s[i]);
@@ -174,14 +174,14 @@ ClothDynamicsJob::Problem ClothDynamicsJob::run() const noexcept {
       .lean = cloth->lean_.data(),
   });
 
-  // In still air, what hardly moves any more comes to rest: what is left would be rounding.
+  // In still air, slow movement is set to rest: the remainder would be rounding.
   if (all_below(air_east_m_s, kTiniest_m_s) && all_below(air_south_m_s, kTiniest_m_s) &&
       all_below(cloth->speed_m_s_, kAtRest_m_s) && all_below(cloth->offset_m_, kAtRest_m)) {
     std::fill(cloth->speed_m_s_.begin(), cloth->speed_m_s_.end(), 0.0F);
     std::fill(cloth->offset_m_.begin(), cloth->offset_m_.end(), 0.0F);
   }
 
-  // A spline through the ghosts is 0 where the column is fixed, and goes on level elsewhere.
+  // A spline through the ghosts is 0 on a fixed column, and continues level elsewhere.
   for (std::size_t line = 0; line < 2 * cloth->links(); ++line) {
     float* const lean = cloth->lean_.data() + line * stride;
     lean[0] = cloth->is_first_column_fixed() ? -lean[2] : lean[1];

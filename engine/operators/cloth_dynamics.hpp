@@ -12,7 +12,7 @@
 
 namespace yuragi::operators {
 
-/// A cloth in few points, where it is and how it moves: the state of ClothDynamicsJob.
+/// A cloth of few points, with their positions and speeds: the state of ClothDynamicsJob.
 ///
 /// Points stand in rows of stride() (whole blocks), from the fixed edge on; a row begins and ends with a ghost that
 /// copies its neighbour, so that every point has one on either side. Threads are straight at rest, as in ClothThreads.
@@ -34,7 +34,7 @@ class CoarseCloth {
   ClothKnots knots() const noexcept { return {.columns = columns_, .links = links(), .stride = stride_}; }
   bool is_first_column_fixed() const noexcept { return is_first_column_fixed_; }
 
-  /// How far each link leans beyond rest (lean.hpp): a row a link, east of all columns, then south, stride() each. The
+  /// The lean of each link beyond rest (lean.hpp): a row per link, east of all columns, then south, stride() each. The
   /// ghosts' are such that a spline through them is 0 on a fixed column. 0 at rest, exactly.
   std::span<const float> lean() const noexcept { return lean_; }
 
@@ -57,19 +57,19 @@ class CoarseCloth {
   bool is_first_column_fixed_;
   float link_length_m_;
   std::vector<float> rest_link_m_;                 ///< x of all columns, then y, z
-  std::vector<float> across_m_, across_growth_m_;  ///< from the column before to that behind, at the edge; a row
+  std::vector<float> across_m_, across_growth_m_;  ///< from the previous to the next column, at the edge; one row
   std::vector<float> rest_length_m_;               ///< of each column's links
   std::vector<float> skin_share_;                  ///< of each column, in a substep
-  std::vector<float> mobility_;                    ///< of each column: 0 where it is fixed
+  std::vector<float> mobility_;                    ///< of each column: 0 if it is fixed
   std::vector<float> offset_m_, predicted_m_, speed_m_s_;  ///< x of all points, then y, z
   std::vector<float> lean_;
 };
 
 /// The hybrid's dynamics (engine/METHOD.md M26): position-based dynamics of a coarse cloth (XPBD; Mueller et al. 2007,
-/// "Position based dynamics"; Macklin et al. 2019, "Small steps in physics simulation"), which noise alone does not
-/// have: weight, inertia, overshoot.
+/// "Position based dynamics"; Macklin et al. 2019, "Small steps in physics simulation"), which adds what noise lacks:
+/// weight, inertia, overshoot.
 ///
-/// Substeps of at most 1/600 s, ten in a tick at 60 Hz. Threads do not stretch: a distance constraint a link
+/// Substeps of at most 1/600 s, ten in a tick at 60 Hz. Threads do not stretch: a distance constraint per link
 /// (compliance 0), from the fixed edge on, and long-range attachments of each point to its own fixed joint (Kim,
 /// Chentanez and Mueller 2012, "Long range attachments"). Across threads the cloth is elastic. The air drags along the
 /// cloth's normal and, less, along its skin, both implicit in the speed, so that no wind makes it overshoot.
@@ -77,9 +77,8 @@ class CoarseCloth {
 /// Weight is the tension that it gives a thread, times how far each link is turned from rest: K_j (u_{j+1} - u_j) with
 /// K_j = g * links below / link length. On links that do not stretch its energy, the sum of K_j L^2 (1 - cos angle), is
 /// exactly that of the weights lifted; and rest is an equilibrium to the bit, from which nothing creeps. Speeds are
-/// limited, so it is finite whatever comes. World metres, m/s. Owns nothing. Thread-safe: jobs of different cloths,
-/// yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 70 us a tick of 30 x 38 points
-/// (x86-64-v3).
+/// limited, so it is finite for any input. World metres, m/s. Owns nothing. Thread-safe: jobs of different cloths, yes.
+/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 70 us a tick of 30 x 38 points (x86-64-v3).
 struct ClothDynamicsJob {
   std::span<const float> air_east_m_s;   ///< at each column, ghosts included: stride() values, finite
   std::span<const float> air_south_m_s;  ///< as many
@@ -89,7 +88,7 @@ struct ClothDynamicsJob {
   double across_stiffness_s2 = 2000;  ///< per point's mass and metre, between neighbouring threads; 0 to 20000
   double damping_per_s = 0.6;         ///< at least 0
   double largest_speed_m_s = 15.0;    ///< above 0
-  double largest_lean_per_s = 8.0;    ///< lean() goes no faster than this; above 0
+  double largest_lean_per_s = 8.0;    ///< maximum rate of lean(); above 0
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
   CoarseCloth* cloth = nullptr;

@@ -6,10 +6,10 @@
 namespace yuragi::operators {
 namespace {
 
-/// Below any square that counts: keeps quotients finite.
+/// Below any relevant square: keeps quotients finite.
 constexpr float kTiny = 1e-12F;
 
-/// A thread may be longer than its links together by this before its long-range attachment holds it.
+/// The factor by which a thread can exceed the length of its links before its long-range attachment holds it.
 constexpr float kSlack = 1.001F;
 
 struct Lanes3 {
@@ -31,7 +31,7 @@ struct Lanes3 {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Vectors as the cloth keeps them: all x, then all y, then all z, `apart` from one another.
+/// Vectors in the cloth's layout: all x, then all y, then all z, `apart` from one another.
 [[gnu::always_inline]] inline Lanes3 load3(const float* from, std::size_t apart) noexcept {
   return {math::load_lanes(from), math::load_lanes(from + apart), math::load_lanes(from + 2 * apart)};
 }
@@ -46,12 +46,12 @@ struct Lanes3 {
   return {math::clamp_lanes(value.x, most), math::clamp_lanes(value.y, most), math::clamp_lanes(value.z, most)};
 }
 
-/// Where each point would go: weight, its neighbours, and the air.
+/// Computes where each point would go: weight, its neighbours, and the air.
 void predict(const ClothDynamicsKernelArguments& in) noexcept {
   const std::size_t count = in.rows * in.stride;
   for (std::size_t row = 1; row < in.rows; ++row) {
     const bool is_last = row + 1 == in.rows;
-    const std::size_t below = is_last ? 0 : in.stride;  // the last has none: itself, without weight
+    const std::size_t below = is_last ? 0 : in.stride;  // the last has none below it: uses itself, without weight
     const auto links_below = static_cast<float>(in.rows - 1 - row);
     const math::Lanes weight_above = math::same_lanes(in.weight_s2 * (links_below + 1.0F) * in.substep_s);
     const math::Lanes weight_below = math::same_lanes(in.weight_s2 * links_below * in.substep_s);
@@ -77,8 +77,8 @@ void predict(const ClothDynamicsKernelArguments& in) noexcept {
       const Lanes3 past = {math::load_lanes(in.air_east_m_s + i) - speed.x, -speed.y,
                            math::load_lanes(in.air_south_m_s + i) - speed.z};
 
-      // Drag through the cloth, quadratic and implicit: with d the speed past along the normal n and a the drag of a
-      // way, the share a |d| / (1 + a |d|) of it goes over to the cloth. In one division, for n of any length.
+      // Drag through the cloth, quadratic and implicit: with d the relative speed along the normal n and a the drag per
+      // distance, the cloth takes the share a |d| / (1 + a |d|) of it. In one division, for n of any length.
       const math::Lanes along_normal = dot(past, normal);
       const math::Lanes drag = in.normal_drag * (along_normal < 0.0F ? -along_normal : along_normal);
       const math::Lanes square = dot(normal, normal) + kTiny;
@@ -91,7 +91,7 @@ void predict(const ClothDynamicsKernelArguments& in) noexcept {
   }
 }
 
-/// Puts the links' lengths right, from the fixed edge on, and sees what speeds come of it.
+/// Corrects the links' lengths, from the fixed edge on, and derives the speeds.
 void constrain(const ClothDynamicsKernelArguments& in) noexcept {
   const std::size_t count = in.rows * in.stride;
   const float per_s = 1.0F / in.substep_s;
@@ -123,7 +123,7 @@ void constrain(const ClothDynamicsKernelArguments& in) noexcept {
       store3(in.predicted_m + below, count, to);
       if (is_first) continue;
 
-      // The point above is where it will be.
+      // The new position of the point above.
       const Lanes3 was = load3(in.offset_m + above, count);
       const Lanes3 speed = limited(per_s * mobility * (from - was), in.largest_speed_m_s);
       store3(in.speed_m_s + above, count, speed);
@@ -149,7 +149,7 @@ void constrain(const ClothDynamicsKernelArguments& in) noexcept {
   }
 }
 
-/// How the links lean now, beyond rest, as far as they may in a tick.
+/// Computes the links' leans beyond rest, limited by the rate per tick.
 void lean(const ClothDynamicsKernelArguments& in) noexcept {
   const std::size_t count = in.rows * in.stride;
   for (std::size_t link = 0; link + 1 < in.rows; ++link) {
@@ -158,7 +158,7 @@ void lean(const ClothDynamicsKernelArguments& in) noexcept {
       const Lanes3 rest_link = load3(in.rest_link_m + i, in.stride);
       const Lanes3 way =
           rest_link + (load3(in.offset_m + above + in.stride, count) - load3(in.offset_m + above, count));
-      // A link that points nearly straight up would lean without end; it is taken as one that leans by 2 at most.
+      // A link that points nearly straight up would have an infinite lean; it is limited to 2.
       const auto per_lean = [](Lanes3 link_m) {
         const math::Lanes length_m = math::sqrt_lanes(dot(link_m, link_m) + kTiny * kTiny);
         const math::Lanes below_top_m = length_m - link_m.y;

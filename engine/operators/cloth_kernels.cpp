@@ -15,7 +15,7 @@ void propagate(const PropagationKernelArguments& arguments) noexcept {
   }
 }
 
-/// Lanes of columns go down the whole band, so that where they are stays in registers.
+/// Lanes of columns run down the whole band, so that their positions stay in registers.
 void hang(const ClothKernelArguments& arguments) noexcept {
   const ClothKernelArguments in = arguments;
   const std::size_t columns = in.columns;

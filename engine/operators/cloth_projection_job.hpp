@@ -15,7 +15,7 @@ namespace yuragi::operators {
 /// is the vector (east, south) of lean.hpp.
 struct ClothThreads {
   std::size_t stride = 0;  ///< columns in whole blocks
-  std::size_t links = 0;   ///< of a thread: one fewer than joints
+  std::size_t links = 0;   ///< of a thread: the number of joints less one
   float link_length_m = 0.0F;
   std::vector<float> rest_lean;  ///< east of all columns, then south
   std::vector<float>
@@ -25,12 +25,12 @@ struct ClothThreads {
 /// The threads that lean so (2 * stride values; stride a multiple of kStrandsPerBlock). Allocates.
 ClothThreads make_threads(std::size_t links, float link_length_m, std::span<const float> rest_lean);
 
-/// The projection of a cloth: points each link to where it leans, and adds the links up from the fixed edge to the
-/// joints' offsets, in GridPose's meaning. Links turn and do not stretch: threads keep their length to rounding (about
-/// 1e-6). The leans of rest give exactly no offset, and the fixed edge stays at its offset.
+/// The projection of a cloth: gives each link the direction of its lean, and adds the links up from the fixed edge to
+/// the joints' offsets, in GridPose's meaning. Links turn and do not stretch: threads keep their length to rounding
+/// (about 1e-6). The leans of rest give exactly no offset, and the fixed edge stays at its offset.
 ///
-/// A job does the links from first_link on, as many as `lean` has rows, and takes the joints where they begin from the
-/// pose: so a cloth is done in bands that stay in the nearest cache, from the fixed edge on. With first_link 0 it also
+/// A job does the links from first_link on, as many as `lean` has rows, and reads the joints above them from the pose:
+/// so a cloth is computed from the fixed edge on, in bands that stay in the nearest cache. With first_link 0 it also
 /// sets the fixed edge. World metres. Owns nothing; `pose` overlaps no input. Thread-safe: jobs with different poses,
 /// yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.5 ns a joint (x86-64-v3).
 struct ClothProjectionJob {

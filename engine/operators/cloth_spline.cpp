@@ -15,7 +15,7 @@ namespace {
 constexpr KernelRows<ClothDynamicsKernels> kSplineRows = YURAGI_KERNEL_ROWS(cloth_dynamics_kernels);
 constexpr KernelRows<ClothKernels> kLineRows = YURAGI_KERNEL_ROWS(cloth_kernels);
 
-/// Where four neighbouring values weigh how much; values outside [0, last] are taken as the one at the end.
+/// The weights of four neighbouring values; outside [0, last] the value at the end is used.
 struct Taps {
   std::array<std::size_t, 4> at;
   std::array<float, 4> weight;
@@ -49,7 +49,7 @@ ClothSpline::ClothSpline(const ClothKnots& knots, std::size_t columns, std::size
     taps.push_back(taps_at(1.0 + coarse_per_fine * column, knots.columns + 1));
   }
 
-  // As many taps for each block as the widest needs, and none beyond the coarse row's end.
+  // As many taps for each block as the widest one needs, and none beyond the coarse row's end.
   const std::size_t blocks = stride / pose::kStrandsPerBlock;
   for (std::size_t block = 0; block < blocks; ++block) {
     const Taps& first = taps[block * pose::kStrandsPerBlock];

@@ -11,9 +11,9 @@
 namespace yuragi::operators {
 
 /// A coarse grid of leans over a cloth's links. Rows of `stride` (whole blocks): a ghost before the first column, the
-/// columns, and what is behind them, of which the first is a ghost again. Columns are spread evenly from the cloth's
-/// first to its last, a ghost as far beyond; links as evenly along the threads. Leans lie a row a link, east of all
-/// columns, then south: size() values.
+/// columns, and padding, whose first element is a ghost, too. Columns are spread evenly from the cloth's first to its
+/// last, the ghosts one spacing beyond; links evenly along the threads. Leans have a row per link, east of all columns,
+/// then south: size() values.
 struct ClothKnots {
   std::size_t columns = 2;  ///< without ghosts; 2 or more, and 2 fewer than the stride or less
   std::size_t links = 1;
@@ -22,16 +22,16 @@ struct ClothKnots {
   std::size_t size() const noexcept { return 2 * links * stride; }
 };
 
-/// The way from a coarse grid of leans to those of all links: across the threads a uniform cubic B-spline (de Boor
+/// Interpolates from a coarse grid of leans to those of all links: across the threads a uniform cubic B-spline (de Boor
 /// 1978, "A practical guide to splines"), and along them such a spline too (ClothSplineJob), or straight lines
-/// (ClothLineJob). A mean with weights of at least 0, so that it never exceeds or outpaces what it goes through. Holds
+/// (ClothLineJob). A mean with weights of at least 0, so that neither values nor rates exceed those of the grid. Holds
 /// the weights, and the coarse rows spread over all columns. Allocates when it is made. Thread-safe: no. Realtime-safe:
 /// spread().
 class ClothSpline {
  public:
   ClothSpline(const ClothKnots& knots, std::size_t columns, std::size_t links);
 
-  /// Takes over leans of the knots that this was made for: knots.size() values. Cost: about 0.1 ns a column and link of
+  /// Takes the leans of the knots for which this was made: knots.size() values. Cost: about 0.1 ns a column and link of
   /// the knots.
   void spread(std::span<const float> leans, SimdRow row) noexcept;
 
@@ -67,10 +67,10 @@ struct ClothSplineJob {
 };
 
 /// out = base + the spline's leans, of the links from first_link on, as ClothSplineJob's; but straight from knot to
-/// knot along the threads, and level before the first and behind the last. What they add up to is smooth still, for a
-/// lean is a direction. `base` is one row, the same for all links. Leans of 0 give `base` to the bit. Owns nothing.
-/// Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about
-/// 0.1 ns a value (x86-64-v3).
+/// knot along the threads, and level before the first and behind the last. The joints are still on a smooth curve,
+/// because a lean is a direction. `base` is one row, the same for all links. Leans of 0 give `base` to the bit. Owns
+/// nothing. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same bits.
+/// Cost: about 0.1 ns a value (x86-64-v3).
 struct ClothLineJob {
   const ClothSpline* spline = nullptr;
   std::span<const float> base;

@@ -10,9 +10,9 @@ namespace yuragi::operators {
 
 /// BendingJob for hairs on a body: the wind strokes along the skin, and opens partings.
 ///
-/// With n the skin's outward normal at a hair, the wind along the skin there is u_t = u - (u . n) n: what blows into
-/// the skin bends nothing. The turn about a level axis that lays a hair from n toward u_t points downwind, wherever on
-/// the body it grows. So it bends downwind by
+/// With n the skin's outward normal at a hair, the wind along the skin there is u_t = u - (u . n) n: the part into the
+/// skin bends nothing. The turn about a level axis that lays a hair from n toward u_t points downwind everywhere on the
+/// body. So it bends downwind by
 ///
 ///   s^2 / (1 + s^2) (max_bend e + stroke * stroke_along)    s = |u_t| flexibility / half_bend_speed
 ///
@@ -23,11 +23,11 @@ namespace yuragi::operators {
 struct CoatBendingJob {
   double wind_east_m_s = 0.0;  ///< finite, and its square too
   double wind_south_m_s = 0.0;
-  std::span<const float> normal_x;  ///< of the skin, outward, of length 1 with its upward part
+  std::span<const float> normal_x;  ///< of the skin, outward, of unit length
   std::span<const float> normal_z;
   std::span<const float> stroke_along;        ///< noise at each hair
   std::span<const float> stroke_across;       ///< the same, independent of it
-  std::span<const float> flexibility;         ///< of each hair, at least 0: 1 is half bent at half_bend_speed_m_s
+  std::span<const float> flexibility;         ///< of each hair, at least 0: with 1, half bent at half_bend_speed_m_s
   double half_bend_speed_m_s = 5.5;           ///< at least 0.01
   double max_bend_rad = 1.4;                  ///< 0 to pi
   double stroke_rad = 0.28;                   ///< 0 to pi

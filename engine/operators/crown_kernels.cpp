@@ -17,7 +17,7 @@ namespace {
 }
 
 void split(const SplitKernelArguments& arguments) noexcept {
-  const SplitKernelArguments in = arguments;  // a copy, which no store can be taken for a change of
+  const SplitKernelArguments in = arguments;  // a copy, which stores cannot change
   float* const __restrict above = in.above;
   float* const __restrict below = in.below;
   const float per_width = 1.0F / in.width;
@@ -47,7 +47,7 @@ void force(const ForceKernelArguments& arguments) noexcept {
   }
 }
 
-/// x where it is small, and never beyond `limit`. (Of 0 within 0 it is 0.)
+/// x if it is small, and never beyond `limit`. (For x = 0 and limit = 0 it is 0.)
 [[gnu::always_inline]] inline float capped(float x, float limit) noexcept {
   return x * (limit / __builtin_sqrtf(limit * limit + x * x + 1e-30F));
 }

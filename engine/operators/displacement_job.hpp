@@ -11,7 +11,7 @@ namespace yuragi::operators {
 /// The projection operator "displacement": a noise moves points along a direction, here their normals, as
 /// SurfacePose::displacement_m (Chiba, section 2-2 (3)).
 ///
-/// displacement = amplitude * share * noise: `share` is each point's own part in it (0 holds a point where it is). An
+/// displacement = amplitude * share * noise: `share` is each point's own factor (0 holds a point in place). An
 /// amplitude of 0 gives 0 for any finite noise. Metres. Owns nothing; `displacement_m` may be `noise` itself, and
 /// overlaps nothing else. Thread-safe: jobs with different outputs, yes. Realtime-safe: yes. Every SIMD row computes
 /// the same bits. Cost: about 0.1 ns a point (x86-64-v3).

@@ -9,12 +9,12 @@
 
 namespace yuragi::operators {
 
-/// The projection operator of leaves: each leans with the wind in the place of its spray, as far as its petiole gives
-/// way, and flutters to and fro across an axis of its own by its noise (Chiba, section 3.3). The bend, in StrandPose's
-/// meaning, is give lean + flutter noise axis, with lean and flutter of LeafResponseJob. Sprays are of kLeavesOfASpray
-/// leaves each, which follow one another. Radians. The spans of the leaves have the same size, as do those of the
-/// places; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with different outputs, yes.
-/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.5 ns a leaf (x86-64-v3).
+/// The projection operator of leaves: each leans with the wind at its spray, as far as its petiole yields, and flutters
+/// across its own axis by its noise (Chiba, section 3.3). The bend, in StrandPose's meaning, is give lean + flutter
+/// noise axis, with lean and flutter of LeafResponseJob. Sprays are of kLeavesOfASpray leaves each, which follow one
+/// another. Radians. The spans of the leaves have the same size, as do those of the places; the outputs overlap nothing
+/// else. Owns nothing. Thread-safe: jobs with different outputs, yes. Realtime-safe: yes. Every SIMD row computes the
+/// same bits. Cost: about 0.5 ns a leaf (x86-64-v3).
 struct FlutterJob {
   static constexpr std::size_t kLeavesOfASpray = 16;
 
@@ -24,7 +24,7 @@ struct FlutterJob {
   std::span<const std::uint32_t> place;  ///< of each spray
   std::span<const float> noise;          ///< at each leaf
   std::span<const float> give;           ///< of its petiole
-  std::span<const float> axis_east;      ///< to where a noise above 0 bends it; its length is how lively it is
+  std::span<const float> axis_east;  ///< direction of the bend for a positive noise; its length is the leaf's activity
   std::span<const float> axis_south;
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
@@ -33,8 +33,8 @@ struct FlutterJob {
 
   enum class Problem : std::uint8_t {
     kNone,
-    kSizesDiffer,  ///< or there are not as many leaves as in whole sprays
-    kPlace,        ///< of a spray, that is not there
+    kSizesDiffer,  ///< or the number of leaves is not a multiple of a spray's
+    kPlace,        ///< index of a spray that does not exist
     kRowNotRunnable,
   };
   [[nodiscard]] Problem validate() const noexcept;

@@ -10,8 +10,8 @@
 
 namespace yuragi::operators {
 
-/// A shifted noise, and the grid of places at which it is read, whose axes are those of the tile: the phase of each
-/// column along x, and of each row along z. A field that has moved by `offset` is read at place - offset.
+/// A shifted noise, and the grid at which it is read, with the tile's axes: the phase of each column along x, and of
+/// each row along z. A field that has moved by `offset` is read at place - offset.
 struct GridNoiseLayer {
   const noise::Tile2* tile = nullptr;
   std::span<const std::uint32_t> column_x;
@@ -21,8 +21,8 @@ struct GridNoiseLayer {
 };
 
 /// The sampling operator over a grid (Chiba, section 2-2 (2)): the values of SampleJob, bit for bit, at the places
-/// (column_x, row_z), row after row: out = sum of weight * noise(place - offset). Where a column is on the tile is
-/// found once for all rows, and neighbours' samples are read together: two to three times as fast.
+/// (column_x, row_z), row after row: out = sum of weight * noise(place - offset). A column's position on the tile is
+/// computed once for all rows, and neighbours' samples are read together: two to three times as fast.
 ///
 /// Owns nothing; `out` overlaps no input. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD
 /// row computes the same bits, and layers are added in their order. Cost: 0.4 to 0.8 ns a place and layer.

@@ -4,7 +4,7 @@
 #include "engine/math/lanes.hpp"
 #include "engine/noise/torus_read.hpp"
 
-// clang has no __builtin_shuffle; without AVX2 it would be made of single loads.
+// clang has no __builtin_shuffle; without AVX2 it would consist of single loads.
 #if defined(__AVX2__) && !defined(__clang__)
 #define YURAGI_PICKS_LANES 1
 #else
@@ -14,16 +14,16 @@
 namespace yuragi::operators {
 namespace {
 
-/// The grid is gone through in strips of so many columns, each from the first row to the last.
+/// The grid is processed in strips of this many columns, each from the first row to the last.
 constexpr std::size_t kStrip = 16;
 
-/// Where the columns of a strip are on a layer's tile.
+/// The positions of a strip's columns on a layer's tile.
 struct StripColumns {
   alignas(64) std::uint32_t west[kStrip];
   alignas(64) float fraction[kStrip];
-  bool wraps = false;    ///< one is behind the last sample, whose east is the first
-  bool is_near = false;  ///< all that is read for a register lies in its window
-  /// Where the 2 kLaneCount samples begin that hold what is read for a register.
+  bool wraps = false;    ///< a column is after the last sample, whose east neighbour is the first
+  bool is_near = false;  ///< all samples for a register are in its window
+  /// The begin of the 2 kLaneCount samples that contain those for a register.
   std::uint32_t window[kStrip / math::kLaneCount];
 };
 
@@ -131,10 +131,10 @@ void sample_strip(const GridSampleKernelArguments& in, std::size_t first) noexce
 }
 
 void sample(const GridSampleKernelArguments& arguments) noexcept {
-  const GridSampleKernelArguments in = arguments;  // a copy, which no store to `out` can be taken for a change of
+  const GridSampleKernelArguments in = arguments;  // a copy, which stores to `out` cannot change
   if (in.columns >= kStrip) {
     for (std::size_t first = 0; first + kStrip < in.columns; first += kStrip) sample_strip(in, first);
-    sample_strip(in, in.columns - kStrip);  // a whole one again, whatever is left
+    sample_strip(in, in.columns - kStrip);  // a whole strip again, which overlaps the last one
     return;
   }
   for (std::size_t row = 0; row < in.rows; ++row) {

@@ -8,16 +8,16 @@
 
 namespace yuragi::operators {
 
-/// BendingJob where every strand has a wind of its own: it bends toward where its wind blows, by max_bend s^2/(1 +
-/// s^2), s = speed * strength * flexibility / half_bend_speed.
+/// BendingJob with a wind of its own for every strand: it bends downwind by max_bend s^2/(1 + s^2), s = speed *
+/// strength * flexibility / half_bend_speed.
 ///
 /// m/s, radians. All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with
 /// different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Calm gives exactly (0, 0).
 struct LocalBendingJob {
   std::span<const float> wind_east_m_s;       ///< finite
   std::span<const float> wind_south_m_s;      ///< finite
-  std::span<const float> strength;            ///< of its wind, as a factor, at least 0
-  std::span<const float> flexibility;         ///< of each strand, at least 0: 1 is half bent at half_bend_speed_m_s
+  std::span<const float> strength;            ///< factor on its wind, at least 0
+  std::span<const float> flexibility;         ///< of each strand, at least 0: with 1, half bent at half_bend_speed_m_s
   double half_bend_speed_m_s = 7.0;           ///< at least 0.01
   double max_bend_rad = 1.4;                  ///< 0 to pi
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run

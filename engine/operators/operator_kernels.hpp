@@ -22,7 +22,7 @@ struct SampleKernelLayer {
   const float* tile = nullptr;
   SampleKernelPlaces places;
   float weight = 1.0F;
-  const float* weights = nullptr;  ///< of each place, beside `weight`; null: 1
+  const float* weights = nullptr;  ///< of each place, multiplied by `weight`; null: 1
 };
 
 struct SampleKernelArguments {
@@ -48,7 +48,7 @@ struct VectorSampleKernelLayer {
   float ahead_z = 0.0F;
   float along = 1.0F;
   float across = 1.0F;
-  const float* along_weights = nullptr;  ///< of each place, beside `along`; null: 1
+  const float* along_weights = nullptr;  ///< of each place, multiplied by `along`; null: 1
   const float* across_weights = nullptr;
   float strength = 1.0F;
   float strength_per_fall = 0.0F;
@@ -68,7 +68,7 @@ struct BendingKernelArguments {
   const float* strength = nullptr;
   const float* flexibility = nullptr;
   float wind_in_half_bends = 0.0F;  ///< wind speed / half-bend speed
-  float bend_east_rad = 0.0F;       ///< the largest bend, toward where the wind blows
+  float bend_east_rad = 0.0F;       ///< the maximum bend, downwind
   float bend_south_rad = 0.0F;
   float* out_east_rad = nullptr;
   float* out_south_rad = nullptr;
@@ -117,7 +117,7 @@ struct OscillatorKernelArguments {
   float blend = 0.0F;
   float* value = nullptr;
   float* rate = nullptr;
-  float* driven = nullptr;  ///< in: the noise's angle; out: what blends the two
+  float* driven = nullptr;  ///< in: the noise's angle; out: the blend of the two
 };
 
 struct SampleKernels {
@@ -135,7 +135,7 @@ YURAGI_DECLARE_KERNEL_ROWS(BendingKernels, bending_kernels);
 
 struct OscillatorKernels {
   void (*step)(const OscillatorKernelArguments&) noexcept;       ///< all alike
-  void (*step_each)(const OscillatorKernelArguments&) noexcept;  ///< each in its own way
+  void (*step_each)(const OscillatorKernelArguments&) noexcept;  ///< each with its own step
 };
 YURAGI_DECLARE_KERNEL_ROWS(OscillatorKernels, oscillator_kernels);
 

@@ -82,7 +82,7 @@ OscillatorJob::Problem OscillatorJob::run() const noexcept {
 
   const OscillatorKernels& kernels = kOscillatorRows[row.value_or(best_simd_row())];
   auto* const go_on = steps != nullptr ? kernels.step_each : kernels.step;
-  // So many at a time that the steps that both axes read are still in the nearest cache for the second.
+  // So many at a time that the steps, which both axes read, are still in the nearest cache for the second.
   constexpr std::size_t kAtOnce = 1024;
   for (std::size_t begin = 0; begin < east.size(); begin += kAtOnce) {
     const std::size_t i = first + begin;

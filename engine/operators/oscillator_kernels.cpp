@@ -4,10 +4,10 @@
 namespace yuragi::operators {
 namespace {
 
-/// What has died away this far is at rest. (Decaying on, it would come to numbers that processors are slow with.)
+/// An oscillator with smaller values is at rest. (Further decay would lead to denormal numbers, which are slow.)
 constexpr float kAtRest = 1e-9F;
 
-/// One oscillator goes on by a tick.
+/// Advances one oscillator by a tick.
 [[gnu::always_inline]] inline void go_on(float q_from_e, float q_from_v, float v_from_e, float v_from_v, float blend,
                                          float& value, float& rate, float& driven) noexcept {
   const float g = driven;
@@ -22,7 +22,7 @@ constexpr float kAtRest = 1e-9F;
 }
 
 void step(const OscillatorKernelArguments& arguments) noexcept {
-  const OscillatorKernelArguments in = arguments;  // a copy, which no store to the outputs can be taken for a change of
+  const OscillatorKernelArguments in = arguments;  // a copy, which stores to the outputs cannot change
   float* const __restrict value = in.value;
   float* const __restrict rate = in.rate;
   float* const __restrict driven = in.driven;

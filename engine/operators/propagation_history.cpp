@@ -15,8 +15,8 @@ PropagationHistory::PropagationHistory(std::size_t width, double longest_s)
 void PropagationHistory::push(std::span<const float> values, double dt_s) noexcept {
   if (!(dt_s > 0.0) || values.size() != width_) return;
 
-  // Samples that lie between the present that was and the one that comes. After a pause that is longer than the ring,
-  // those that would be overwritten at once are left out.
+  // Samples between the previous present and the new one. After a pause longer than the ring, those that would be
+  // overwritten at once are skipped.
   const double step = dt_s * kSampleRate_hz;
   const double due = std::floor(phase_ + step);
   const double first = std::max(1.0, due - static_cast<double>(count_) + 1.0);

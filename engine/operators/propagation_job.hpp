@@ -11,14 +11,14 @@
 namespace yuragi::operators {
 
 /// The projection operator "propagation": link i of n (from 0) takes the value of travel_time * i / (n - 1) ago, times
-/// its growth, on top of a base that the whole chain has at once (Chiba, section 2-2 (3), figures 6 and 10: a base sway
+/// its growth, plus a base that is the same for the whole chain (Chiba, section 2-2 (3), figures 6 and 10: a base sway
 /// for the whole cloth, and a noise that runs from the fixed edge to the free one).
 ///
-/// A time and not a number of ticks: fractional, interpolated, and continuous where it is changed, so that the motion
-/// does not depend on the tick rate. out[link * width + j] = base[j] + growth[link] * history(j, delay of the link);
-/// what the values are is the caller's. `out` may be a part of the links, from first_link on. Owns nothing; `out`
-/// overlaps no input. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes the same
-/// bits. Cost: about 0.1 ns a value (x86-64-v3).
+/// A time and not a number of ticks: fractional, interpolated, and continuous when it changes, so that the motion does
+/// not depend on the tick rate. out[link * width + j] = base[j] + growth[link] * history(j, delay of the link); the
+/// caller decides on the meaning of the values. `out` can be a part of the links, from first_link on. Owns nothing;
+/// `out` overlaps no input. Thread-safe: jobs with different `out`, yes. Realtime-safe: yes. Every SIMD row computes
+/// the same bits. Cost: about 0.1 ns a value (x86-64-v3).
 struct PropagationJob {
   const PropagationHistory* history = nullptr;
   std::span<const float> base;    ///< history->width() values
@@ -27,7 +27,7 @@ struct PropagationJob {
   std::size_t first_link = 0;
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
 
-  std::span<float> out;  ///< whole rows of history->width(), one a link
+  std::span<float> out;  ///< whole rows of history->width(), one per link
 
   enum class Problem : std::uint8_t {
     kNone,

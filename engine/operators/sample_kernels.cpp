@@ -8,11 +8,11 @@
 namespace yuragi::operators {
 namespace {
 
-/// Places are read this many at a time: where they are and what comes of their samples are computed in SIMD lanes, and
-/// only the loads between go one by one (a gather instruction is slower).
+/// Places are read this many at a time: positions and results are computed in SIMD lanes, and only the loads are done
+/// one by one (a gather instruction is slower).
 constexpr std::size_t kAtOnce = 16;
 
-/// Where some places are on a tile.
+/// The positions of some places on a tile.
 struct Cells {
   alignas(64) std::uint32_t north[kAtOnce], south[kAtOnce];  ///< of the western sample, in the tile
   alignas(64) float x_fraction[kAtOnce], z_fraction[kAtOnce];
@@ -29,7 +29,8 @@ struct Pairs {
   return pair;
 }
 
-/// The same where the row may end between the two: the east is then the row's first. `last`: of a row's samples.
+/// The same if the row can end between the two: then the east sample is the row's first. `last`: index of a row's last
+/// sample.
 [[gnu::always_inline]] inline std::uint64_t load_pair_around(const float* tile, std::uint32_t west,
                                                              std::uint32_t last) noexcept {
   const std::uint32_t east = (west & ~last) | ((west + 1U) & last);
@@ -48,8 +49,8 @@ struct Pairs {
   return of_places == nullptr ? weight : weight * of_places[place];
 }
 
-/// Where kAtOnce places are on a layer's tile. Returns whether one of them is in the last column, whose east is the
-/// first.
+/// Computes the positions of kAtOnce places on a layer's tile. Returns whether one of them is in the last column, whose
+/// east neighbour is the first.
 [[gnu::always_inline]] inline bool find_cells(const SampleKernelPlaces& places, std::size_t begin, Cells& at) noexcept {
   const std::uint32_t last = (1U << places.log2_size) - 1U;
   std::uint32_t wraps = 0;
@@ -65,7 +66,7 @@ struct Pairs {
   return wraps != 0;
 }
 
-/// A cell's two samples stand side by side in the tile, but for the last column's: where one of the places is there
+/// A cell's two samples are side by side in the tile, except in the last column: if one of the places is there
 /// (`wraps`), all are loaded one by one.
 [[gnu::always_inline]] inline void load_pairs(const float* tile, unsigned log2_size, const Cells& at, bool wraps,
                                               Pairs& pairs) noexcept {
@@ -118,7 +119,7 @@ struct VectorPairs {
   return {western(pairs.north[i]), eastern(pairs.north[i]), western(pairs.south[i]), eastern(pairs.south[i])};
 }
 
-/// What is summed up at a place over the layers: the two components, and by how much `along` falls ahead, 1/s.
+/// The sums over the layers at a place: the two components, and the decrease of `along` ahead, 1/s.
 struct VectorSum {
   float along, across, fall;
 };
@@ -174,7 +175,7 @@ template <class Number>
   return above > high ? high : above;
 }
 
-/// `known_layers`: how many there are, where the loop over them is to be unrolled; 0: in.layer_count.
+/// `known_layers`: their number, if the loop over them is to be unrolled; 0: in.layer_count.
 template <std::size_t known_layers>
 [[gnu::always_inline]] inline void sample_all(const SampleKernelArguments& in) noexcept {
   const std::size_t layers = known_layers > 0 ? known_layers : in.layer_count;
@@ -199,7 +200,7 @@ template <std::size_t known_layers>
 }
 
 void sample(const SampleKernelArguments& arguments) noexcept {
-  const SampleKernelArguments in = arguments;  // a copy, which no store to `out` can be taken for a change of
+  const SampleKernelArguments in = arguments;  // a copy, which stores to `out` cannot change
   switch (in.layer_count) {
     case 1:
       return sample_all<1>(in);

@@ -8,10 +8,10 @@ namespace yuragi::operators {
 
 /// The shifting operator: the wind carries its turbulence along (Taylor's frozen turbulence), offset += wind dt.
 ///
-/// An integral, never wind times time, so that a new reading bends the path and never jumps the field (Chiba, section
-/// 2-2 (1); engine/METHOD.md M9, D2); and the field itself is never turned, for turning a tile would sweep far places
-/// sideways (D3). The offset moves to where the wind blows: x east, z south. Metres, seconds. Owns nothing.
-/// Thread-safe: different offsets, yes. Realtime-safe: yes.
+/// An integral, never wind times time, so that a new reading bends the path and the field never jumps (Chiba, section
+/// 2-2 (1); engine/METHOD.md M9, D2); and the field itself is never turned, because turning a tile would sweep far
+/// places sideways (D3). The offset moves downwind: x east, z south. Metres, seconds. Owns nothing. Thread-safe:
+/// different offsets, yes. Realtime-safe: yes.
 struct ShiftJob {
   double wind_east_m_s = 0.0;
   double wind_south_m_s = 0.0;

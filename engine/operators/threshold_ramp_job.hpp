@@ -8,14 +8,14 @@
 
 namespace yuragi::operators {
 
-/// The sampling operator "threshold ramp": shows a noise only where it is above a threshold that rises along an axis,
-/// as a flame that dies out toward its top (Chiba, section 2-2 (2), figure 4b).
+/// The sampling operator "threshold ramp": shows a noise only where it exceeds a threshold that rises along an axis,
+/// for a flame that dies out toward its top (Chiba, section 2-2 (2), figure 4b).
 ///
 /// level = smooth((noise - threshold) / edge), threshold = first + (last - first) along, where smooth(t) goes from 0 at
-/// t <= 0 to 1 at t >= 1 as t^2 (3 - 2 t): a soft edge, at most 1.5 / edge steep, so that nothing flickers. `along`
-/// is how far along the axis each place is: 0 at the first threshold, 1 at the last, beyond it further on. Owns
-/// nothing; `level` may be `noise` itself, and overlaps nothing else. Thread-safe: jobs with different `level`, yes.
-/// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.3 ns a place (x86-64-v3).
+/// t <= 0 to 1 at t >= 1 as t^2 (3 - 2 t): a soft edge, at most 1.5 / edge steep, so that nothing flickers. `along` is
+/// each place's position on the axis: 0 at the first threshold, 1 at the last, above 1 beyond it. Owns nothing; `level`
+/// may be `noise` itself, and overlaps nothing else. Thread-safe: jobs with different `level`, yes. Realtime-safe: yes.
+/// Every SIMD row computes the same bits. Cost: about 0.3 ns a place (x86-64-v3).
 struct ThresholdRampJob {
   std::span<const float> noise;
   std::span<const float> along;

@@ -15,19 +15,19 @@ namespace yuragi::operators {
 ///   phi   = W_direction + W_speed (N_horizontal + beta_horizontal) / dist_to_wind_side
 ///
 /// W_speed is the force of the mean wind and the noise that of its gusts (BranchForceJob): with an alpha of 1 theta
-/// goes with the whole force at the branch. W_direction is where the wind blows to there. The distance is in radii of
-/// the tree (WindSideJob). The gain is the branch's own, in radians for a force of 1: the thinner the wood, the more.
-/// What is added to the rest pose's angles goes through x / sqrt(1 + (x / max)^2): up to some ten degrees it is x, and
-/// no wind bends a branch by more than max_tilt along the wind from the first line, nor than max_swing across it (to
-/// the right of where it blows to) from the second, since a pose has no turn about the vertical. Where the wind blows
-/// nowhere, the bend is exactly (0, 0).
+/// goes with the whole force at the branch. W_direction is the downwind direction there. The distance is in radii of
+/// the tree (WindSideJob). The gain is the branch's own, in radians for a force of 1: larger for thinner wood. The
+/// change of the rest pose's angles is limited by x / sqrt(1 + (x / max)^2): up to about ten degrees it is x, and no
+/// wind bends a branch by more than max_tilt along the wind from the first line, nor than max_swing across it (to the
+/// right of where it blows to) from the second, because a pose has no turn about the vertical. In calm air the bend is
+/// exactly (0, 0).
 ///
 /// Radians. All spans have the same size; the outputs overlap nothing else. Owns nothing. Thread-safe: jobs with
 /// different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 1 ns a branch
 /// (x86-64-v3).
 struct TiltJob {
   double force = 0.0;                  ///< W_speed: 0 to 1e6
-  std::span<const float> toward_east;  ///< at each branch, where the wind blows to: no longer than 1
+  std::span<const float> toward_east;  ///< downwind vector at each branch: no longer than 1
   std::span<const float> toward_south;
   std::span<const float> vertical;    ///< N_vertical
   std::span<const float> horizontal;  ///< N_horizontal

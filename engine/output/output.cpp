@@ -11,13 +11,13 @@
 namespace yuragi::output {
 namespace {
 
-constexpr double kFarthestCorner = 1.0;  // beyond the monitor, in monitors: a projection can be larger than it
+constexpr double kFarthestCorner = 1.0;  // beyond the monitor, in monitors: a projection can be larger than the monitor
 constexpr double kMinCrop = 0.001;
 constexpr double kFarthestPlace_m = 1000.0;
-constexpr double kMinSide_m = 0.01;      // of a screen, and the least distance to the eye
+constexpr double kMinSide_m = 0.01;      // of a screen; also the minimum distance to the eye
 constexpr double kMinSquareness = 0.01;  // the most cosine between a screen's sides
 
-/// Numbers with spaces or commas between them. Nothing where they are not `count` finite ones.
+/// Numbers separated by spaces or commas. Nullopt if they are not `count` finite ones.
 std::optional<std::vector<double>> read_numbers(std::string_view text, std::size_t count) {
   constexpr std::string_view kBetween = " ,\t";
   std::vector<double> numbers;
@@ -111,7 +111,7 @@ RoomPlace between(const RoomPlace& from, const RoomPlace& to) {
   return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
 }
 
-/// What is wrong with a screen, or nothing.
+/// Returns the error in a screen, if any.
 std::optional<ParameterError> mistake_of(const Screen& screen) {
   const RoomPlace right = between(screen.lower_left_m, screen.lower_right_m);
   const RoomPlace up = between(screen.lower_left_m, screen.upper_left_m);
@@ -133,7 +133,7 @@ std::optional<ParameterError> mistake_of(const Screen& screen) {
   return std::nullopt;
 }
 
-/// An [[output]] as it is written.
+/// The keys of an [[output]].
 struct Keys {
   std::optional<Size> size;
   int refreshes = 1;

@@ -46,13 +46,13 @@ struct Sides {
   friend bool operator==(const Sides&, const Sides&) = default;
 };
 
-/// A monitor that is filled, and with what.
+/// A monitor, and the part of the picture that fills it.
 struct Window {
   std::string monitor = {};  ///< its name, or its number from 0; empty: the primary one
   Crop crop = {};
   int rotation_deg = 0;             ///< 0, 90, 180 or 270: clockwise, of the picture on the monitor
-  Corners corners = kWholeMonitor;  ///< of the crop, on the monitor as it is seen, that is, rotated
-  Sides blend = {};                 ///< where the crop fades out to meet that of the next projector
+  Corners corners = kWholeMonitor;  ///< of the crop, on the monitor as a viewer sees it, that is, rotated
+  Sides blend = {};                 ///< where the crop fades into that of the next projector
   double gamma = 2.2;               ///< of the projector, for the blend
   friend bool operator==(const Window&, const Window&) = default;
 };
@@ -60,7 +60,7 @@ struct Window {
 /// A place in the room, in meters; any axes that are at right angles.
 using RoomPlace = std::array<double, 3>;
 
-/// A screen that is looked through as through a window, by somebody at a fixed place.
+/// A screen that acts as a window for an eye at a fixed place.
 struct Screen {
   RoomPlace lower_left_m = {};
   RoomPlace lower_right_m = {};
@@ -78,8 +78,8 @@ struct Size {
 /// One picture, and the windows that show it.
 struct Output {
   std::string name = "wall";
-  std::optional<Size> size = std::nullopt;  ///< of the picture; nothing: as many pixels as its windows have
-  int refreshes = 1;                        ///< of the display for each picture
+  std::optional<Size> size = std::nullopt;  ///< of the picture; nullopt: the resolution of its windows
+  int refreshes = 1;                        ///< refreshes of the display per picture
   std::optional<Screen> screen = std::nullopt;
   std::vector<Window> windows = {};  ///< at least one
   friend bool operator==(const Output&, const Output&) = default;
@@ -92,12 +92,12 @@ struct Table {
   Output output = {};
 };
 
-/// The keys of an [[output]], but for its name.
+/// The keys of an [[output]], without its name.
 std::span<const Parameter> output_parameters();
 /// The keys of an [[output.window]].
 std::span<const Parameter> window_parameters();
 
-/// From values of the tables above; without windows.
+/// From values of the tables above, without windows.
 Result<Output, ParameterError> output_of(std::string name, const ParameterValues& values);
 Result<Window, ParameterError> window_of(const ParameterValues& values);
 

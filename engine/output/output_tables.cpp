@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kNameKey = "name";
 
-/// Takes a value made of a table, or its mistake at the key that has it.
+/// Takes a value made from a table; an error is reported at its key.
 template <class Made>
 Made taken(Result<Made, ParameterError> made, const toml::table& table, const std::string& prefix,
            tables::TomlMistakes& mistakes) {

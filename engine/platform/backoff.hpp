@@ -8,7 +8,7 @@
 namespace yuragi::platform {
 
 /// How long to wait before the next attempt: doubles from `first` up to `cap`, and stays there; each wait is shortened
-/// by up to a quarter at random, so that sensors that failed together do not come back in step.
+/// by up to a quarter at random, so that sensors that failed together do not retry together.
 ///
 /// The same seed gives the same waits. Thread-safe: no. Realtime-safe: yes.
 class Backoff {
@@ -16,7 +16,7 @@ class Backoff {
   Backoff(Nanoseconds first, Nanoseconds cap, std::uint32_t seed)
       : first_(first), cap_(cap), next_(first), bits_(seed) {}
 
-  /// The wait after one more failure; more than nothing, at most `cap`.
+  /// The wait after one more failure; above 0, at most `cap`.
   Nanoseconds next() {
     const Nanoseconds full = next_;
     next_ = full < cap_ / 2 ? 2 * full : cap_;

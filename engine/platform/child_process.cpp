@@ -23,7 +23,7 @@ namespace {
 constexpr int kNotStarted = 127;
 constexpr int kKillTakes_ms = 400;
 
-/// The words as exec takes them, which refer to them.
+/// Pointers to the words, as exec takes them.
 std::vector<char*> pointers_to(const std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -32,17 +32,17 @@ std::vector<char*> pointers_to(const std::vector<std::string>& words) {
   return pointers;
 }
 
-/// What the child becomes, prepared before the fork.
+/// The parameters of exec, prepared before the fork.
 struct Becoming {
   std::vector<char*> words;
   std::vector<char*> environment;  ///< empty: ours
   std::array<int, 3> files;        ///< for standard input, output and error; -1: as in ChildProcess::Setup
-  int failure;                     ///< a pipe that takes errno
+  int failure;                     ///< a pipe for errno
   pid_t parent;
   bool has_own_group;
 };
 
-/// What happens between fork and exec: only calls that are safe there (signal-safety(7)).
+/// The steps between fork and exec: only calls that are safe there (signal-safety(7)).
 [[noreturn]] void become(const Becoming& plan) noexcept {
   // Dies with its parent, even one that died before this call.
   if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != plan.parent) _exit(kNotStarted);
@@ -61,7 +61,7 @@ struct Becoming {
     const int file = files[static_cast<std::size_t>(standard)];
     if (file >= 0) is_ready = is_ready && dup2(file, standard) >= 0;
   }
-  // What a library opened without O_CLOEXEC. exec closes it; until then `failure` is needed.
+  // Descriptors that a library opened without O_CLOEXEC. exec closes them; `failure` is needed until then.
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   if (is_ready) {
     execvpe(plan.words[0], plan.words.data(), plan.environment.empty() ? environ : plan.environment.data());
@@ -96,7 +96,7 @@ ChildProcess::ChildProcess(const Setup& setup) : has_own_group_(setup.has_own_gr
   if (process_ == 0) become(plan);
   int error = process_ < 0 ? errno : 0;
   close_if_open(failure[1]);
-  // A successful exec closes the other end of this pipe; otherwise errno comes through it.
+  // A successful exec closes the other end of this pipe; otherwise it transmits errno.
   while (process_ > 0 && ::read(failure[0], &error, sizeof error) < 0 && errno == EINTR) {
   }
   close_if_open(failure[0]);
@@ -136,8 +136,7 @@ void ChildProcess::let_go() noexcept {
   }
   if (!end()) {
     signal(SIGKILL);
-    // A killed process is gone within a moment, unless a driver of the system holds it. One that did not begin has
-    // ended.
+    // A killed process ends immediately, unless a system driver holds it. A child that did not start has ended.
     if (descriptor_ >= 0) {
       end(kKillTakes_ms);
     } else {
@@ -147,7 +146,7 @@ void ChildProcess::let_go() noexcept {
   close_if_open(descriptor_);
 }
 
-/// Takes how it has ended. True: it is no more.
+/// Reaps it if it has ended. Returns true if it does not run any more.
 bool ChildProcess::reap(int options) {
   if (process_ <= 0) return true;
   int status = 0;

@@ -6,12 +6,12 @@
 
 namespace yuragi::platform {
 
-/// Closes a descriptor, unless it is none (below 0), and makes it none.
+/// Closes a descriptor, unless it is negative, and sets it to -1.
 inline void close_if_open(int& descriptor) noexcept {
   if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
 }
 
-/// A descriptor that is closed with this object; below 0: none.
+/// A descriptor that is closed with this object; negative: none.
 class Descriptor {
  public:
   explicit Descriptor(int value) noexcept : value_(value) {}

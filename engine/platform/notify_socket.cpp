@@ -15,13 +15,13 @@
 namespace yuragi::platform {
 namespace {
 
-/// Empty where it is not set.
+/// Empty if it is not set.
 std::string_view environment_value(const char* name) {
   const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe)
   return value == nullptr ? std::string_view() : value;
 }
 
-/// A whole number above 0, or nothing.
+/// An integer above 0, or nullopt.
 std::optional<std::int64_t> positive_number(std::string_view text) {
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

@@ -13,17 +13,17 @@
 
 namespace yuragi::pose {
 
-/// Where the joints of a skeleton are, whatever its kind: StrandKinematicsJob, GridKinematicsJob, TreeKinematicsJob or
-/// SurfaceKinematicsJob, and the positions that they write.
+/// The positions of the joints of a skeleton of any kind: StrandKinematicsJob, GridKinematicsJob, TreeKinematicsJob or
+/// SurfaceKinematicsJob, and their outputs.
 ///
 /// The skeleton must outlive this. Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: run()
-/// and what reads.
+/// and reading.
 class Kinematics {
  public:
   explicit Kinematics(const Skeleton& skeleton, std::optional<SimdRow> row = std::nullopt);
 
-  /// Computes all joints, or those of a part of them: parts may run at the same time (what is not worth sharing out is
-  /// all in the first). False, and nothing done, where the pose does not fit the skeleton.
+  /// Computes all joints, or those of a part of them: parts can run at the same time (small skeletons are completely in
+  /// the first). Returns false, and does nothing, if the pose does not fit the skeleton.
   bool run(const Pose& pose, Part part = {}) noexcept;
 
   /// The joints, in arrays that depend on the kind: JointPositions, PointPositions, TreeJoints.

@@ -14,8 +14,9 @@ template <class T>
 concept PoseLike = std::is_same_v<T, Pose> || std::is_same_v<T, StrandPose> || std::is_same_v<T, GridPose> ||
     std::is_same_v<T, TreePose> || std::is_same_v<T, SurfacePose>;
 
-/// Calls `visit(std::span<float>)` (or of const float) for each array of a pose, always in the same order: what blends,
-/// hashes or counts poses need not know their kinds. Allocates nothing. Thread-safe and realtime-safe as `visit` is.
+/// Calls `visit(std::span<float>)` (or of const float) for each array of a pose, always in the same order: code that
+/// blends, hashes or counts poses need not distinguish their kinds. Allocates nothing. Thread-safe and realtime-safe as
+/// `visit` is.
 template <class AnyPose, class Visit>
 requires PoseLike<std::remove_const_t<AnyPose>>
 void for_each_array(AnyPose& pose, Visit&& visit) {
@@ -42,7 +43,7 @@ void for_each_array(AnyPose& pose, Visit&& visit) {
   }
 }
 
-/// The same arrays, in a list that is no longer than a tree's.
+/// The same arrays, in a list with room for those of a tree.
 template <class Float>
 class Arrays {
  public:
@@ -66,7 +67,7 @@ class Arrays {
 /// The rest pose of a skeleton: zeros in its layout. Allocates.
 Pose rest_pose(const Skeleton& skeleton);
 
-/// Is `pose` of the skeleton's kind, with arrays of its sizes?
+/// Returns true if `pose` is of the skeleton's kind, with arrays of its sizes.
 bool fits(const Pose& pose, const Skeleton& skeleton) noexcept;
 
 /// How many joints of a skeleton move: the paper's N. Padding does not count.

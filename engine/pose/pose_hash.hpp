@@ -8,7 +8,7 @@
 
 namespace yuragi::pose {
 
-/// Where a hash begins (the offset basis of FNV-1a).
+/// Start value of a hash (the offset basis of FNV-1a).
 inline constexpr std::uint64_t kPoseHashSeed = 14695981039346656037U;
 
 /// FNV-1a, 64 bits, over the bits of `values`, low byte first, going on from `seed`: chain calls to hash a whole run.

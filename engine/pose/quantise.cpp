@@ -28,7 +28,7 @@ constexpr float kReachOfCloth = 2.0F;  // as a part of the extent
 constexpr float kReachOfBody = 2.0F;
 constexpr float kReachOfOpenSurface = 0.25F;
 
-/// Of a grid of columns x rows points whose rows are `stride` apart.
+/// For a grid of columns x rows points whose rows are `stride` apart.
 template <class Points>
 float way_step_of(const Points& points, std::size_t columns, std::size_t rows, std::size_t stride,
                   float reach) noexcept {

@@ -10,7 +10,7 @@ template <class Unit>
 [[gnu::always_inline]] inline void quantise_all(const QuantiseArguments<Unit>& arguments) noexcept {
   constexpr float kRound = 0x1.8p23F;  // adding it leaves the nearest integer in the low bits
 
-  const QuantiseArguments<Unit> in = arguments;  // a copy, which no store to `units` can be taken for a change of
+  const QuantiseArguments<Unit> in = arguments;  // a copy, which stores to `units` cannot change
   const float* __restrict const values = in.values;
   Unit* __restrict const units = in.units;
   for (std::size_t i = 0; i < in.count; ++i) {

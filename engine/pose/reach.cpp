@@ -9,7 +9,7 @@
 namespace yuragi::pose {
 namespace {
 
-/// Of `count` places from number `first` on.
+/// For `count` places from number `first` on.
 double reach_of(const std::vector<float>& x_m, const std::vector<float>& z_m, std::size_t first, std::size_t count) {
   double farthest_m = 0.0;
   for (std::size_t i = first; i < first + count; ++i) {

@@ -25,17 +25,17 @@ constexpr std::size_t padded_to_blocks(std::size_t count) {
 /// Many chains of the same number of links: grass, fur.
 ///
 /// At rest a chain leaves its root along `rest` and curls by `rest_curl_rad` from each link to the next toward `curl`.
-/// All vectors have padded_to_blocks(strand_count) elements; what is behind strand_count is finite and is not shown.
+/// All vectors have padded_to_blocks(strand_count) elements; elements from strand_count on are finite and not shown.
 struct StrandSkeleton {
   std::size_t strand_count = 0;
   std::size_t links_per_strand = 0;
   std::vector<float> root_x_m, root_y_m, root_z_m;
   std::vector<float> rest_x, rest_y, rest_z;  ///< unit vector: direction of the first link at rest
-  std::vector<float> curl_x, curl_y, curl_z;  ///< unit vector across `rest`: where the chain curls to
+  std::vector<float> curl_x, curl_y, curl_z;  ///< unit vector across `rest`: the direction of the curl
   std::vector<float> rest_curl_rad;           ///< between one link and the next, at rest
   std::vector<float> link_length_m;
-  /// Where the strands stand for all of the ground around them, on a grid with even spacings: how many there are in a
-  /// row from west to east; rows follow each other from north to south, and strand_count is a multiple. 0: on none.
+  /// For strands that represent all of the ground around them, on a grid with even spacings: the number in a row from
+  /// west to east; rows follow each other from north to south, and strand_count is a multiple. 0: not on a grid.
   std::size_t columns = 0;
 
   std::size_t padded_count() const { return padded_to_blocks(strand_count); }
@@ -52,8 +52,8 @@ struct StrandPose {
 };
 
 /// Cloth: a grid of joints. Row 0 is the fixed edge (a curtain's top, a flag's hoist) and the last row the free one; a
-/// column is a thread from the one to the other. The joint of (column, row) stands at row * stride() + column; all
-/// vectors have rows * stride() elements, what is behind `columns` in a row is finite and is not shown.
+/// column is a thread from the one to the other. The joint of (column, row) is at index row * stride() + column; all
+/// vectors have rows * stride() elements, those from `columns` on in a row are finite and not shown.
 struct GridSkeleton {
   std::size_t columns = 0;
   std::size_t rows = 0;
@@ -64,21 +64,21 @@ struct GridSkeleton {
   friend bool operator==(const GridSkeleton&, const GridSkeleton&) = default;
 };
 
-/// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose. The fixed edge stays
-/// 0; but where the first column is fixed, that stays 0 and the edge may turn about it.
+/// The displacement of each joint from its place at rest, in the skeleton's layout. Zero is the rest pose. The fixed
+/// edge stays 0; but if the first column is fixed, that stays 0 and the edge can turn about it.
 struct GridPose {
   std::vector<float> offset_x_m, offset_y_m, offset_z_m;
 };
 
 /// One generation of a tree's strands: the trunk, the limbs, the twigs, the leaves.
 ///
-/// `strands` is where they are while nothing moves. Strand s of a level above the first grows from the joint behind
-/// link parent_link[s] (from 0) of strand parent[s] of level parent_level, and goes with it: its root stays at that
-/// joint, and its rest direction and curl are turned with that link. Where `is_turned_by_block` is set, the 16 strands
-/// of a block all take the turn of the first one's parent link (a spray of leaves on a twig), each its own root.
+/// `strands` is their rest pose. Strand s of a level above the first grows from the joint after link parent_link[s]
+/// (from 0) of strand parent[s] of level parent_level, and moves with it: its root stays at that joint, and its rest
+/// direction and curl are turned with that link. If `is_turned_by_block` is set, the 16 strands of a block all take the
+/// turn of the first one's parent link (a spray of leaves on a twig), each its own root.
 struct TreeLevel {
   StrandSkeleton strands;
-  std::size_t parent_level = 0;            ///< below this level's own number; of no meaning in the first
+  std::size_t parent_level = 0;            ///< below this level's own number; unused in the first
   std::vector<std::uint32_t> parent;       ///< padded_count() elements, like the next; empty in the first level
   std::vector<std::uint32_t> parent_link;  ///< below links_per_strand of the parent's level
   bool is_turned_by_block = false;
@@ -89,7 +89,7 @@ struct TreeLevel {
   friend bool operator==(const TreeLevel&, const TreeLevel&) = default;
 };
 
-/// What colour a tree's leaves have. The stream (pose.fbs) has the same in the same order.
+/// The color of a tree's leaves. The stream (pose.fbs) has the same in the same order.
 enum class FoliageColor : std::uint8_t {
   kGreen,
   kBlossom,  ///< the pale pink of a cherry in flower
@@ -98,10 +98,10 @@ enum class FoliageColor : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 4> kFoliageColorNames = {"green", "blossom", "autumn", "bare"};
 
-/// Where a tree is shown again: its grove. One value a copy in each vector. At most kMaxTreeCopies.
+/// The copies of a tree: its grove. One value per copy in each vector. At most kMaxTreeCopies.
 struct TreeCopies {
-  std::vector<float> x_m, z_m;  ///< where the foot of the trunk stands, as high up as the tree's own
-  std::vector<float> turn_rad;  ///< clockwise from above, about the foot; the wind bends it as it does the tree
+  std::vector<float> x_m, z_m;  ///< position of the trunk's foot, at the height of the tree's own
+  std::vector<float> turn_rad;  ///< clockwise from above, about the foot; the wind bends it like the tree
   std::vector<float> scale;     ///< above 0
 
   friend bool operator==(const TreeCopies&, const TreeCopies&) = default;
@@ -124,8 +124,8 @@ struct TreePose {
   std::vector<StrandPose> levels;
 };
 
-/// A surface whose points move along their normals, and which may glow: water, a flame. A grid of columns x rows
-/// points; point (column, row) stands at row * columns + column. All float vectors have columns * rows elements.
+/// A surface whose points move along their normals, and which can glow: water, a flame. A grid of columns x rows
+/// points; point (column, row) is at index row * columns + column. All float vectors have columns * rows elements.
 ///
 /// A closed one is a ring of points in each row, around a body; or several rings, one within another, the outermost
 /// first, of columns / shells points each: nested bodies.
@@ -133,32 +133,32 @@ struct SurfaceSkeleton {
   std::size_t columns = 0;
   std::size_t rows = 0;
   bool is_closed = false;  ///< the last column of a shell is followed by its first, around a body
-  std::size_t shells = 1;  ///< of a closed surface: rings a row. At least 1, and columns are a multiple of it
+  std::size_t shells = 1;  ///< of a closed surface: rings per row, at least 1; columns are a multiple of it
   std::vector<float> rest_x_m, rest_y_m, rest_z_m;
   std::vector<float> normal_x, normal_y, normal_z;  ///< unit vectors
   std::vector<std::uint8_t> ramp_rgba;  ///< 256 colours of 4 bytes (sRGB, straight alpha) for `heat`; empty: no heat
-  /// The middle of each row at rest, where poses move whole rows (rows elements); otherwise none.
+  /// The middle of each row at rest, if poses move whole rows (rows elements); otherwise empty.
   std::vector<float> axis_x_m, axis_z_m;
 
   bool moves_rows() const { return !axis_x_m.empty(); }
   friend bool operator==(const SurfaceSkeleton&, const SurfaceSkeleton&) = default;
 };
 
-/// How far each point is moved along its normal, and where its colour stands on the ramp; and how each row is moved
-/// besides, in the world, as a body bends.
+/// The displacement of each point along its normal, and the position of its color on the ramp; also the movement of
+/// each row in the world, for a body that bends.
 ///
-/// All points of a row go by (row_east_m, -row_drop_m, row_south_m), and the row, which was level, slopes: a point that
-/// is x east and z south of the row's middle goes down by row_slope_east x + row_slope_south z. (A body whose rows
-/// slope by the tangent of half the angle that its axis leans is as thick across the axis as it was.)
+/// All points of a row move by (row_east_m, -row_drop_m, row_south_m), and the row, which was level, slopes: a point
+/// that is x east and z south of the row's middle goes down by row_slope_east x + row_slope_south z. (A body whose rows
+/// slope by the tangent of half the angle that its axis leans keeps its thickness across the axis.)
 struct SurfacePose {
   std::vector<float> displacement_m;  ///< columns * rows elements
-  std::vector<float> heat;            ///< 0 to 1; as many, or none where there is no ramp
-  // rows elements each, or none where rows do not move.
+  std::vector<float> heat;            ///< 0 to 1; one per point, or empty without a ramp
+  // rows elements each, or empty if rows do not move.
   std::vector<float> row_east_m, row_south_m, row_drop_m;
   std::vector<float> row_slope_east, row_slope_south;
 };
 
-/// The kinds of skeleton, and the pose that goes with each, in the same order.
+/// The kinds of skeleton, and the pose of each, in the same order.
 using Skeleton = std::variant<StrandSkeleton, GridSkeleton, TreeSkeleton, SurfaceSkeleton>;
 using Pose = std::variant<StrandPose, GridPose, TreePose, SurfacePose>;
 

@@ -5,31 +5,31 @@
 #include "engine/math/trig.hpp"
 
 // The plane of the bend. With b the unit vector toward which a strand bends and a = up x b the axis across it, a vector
-// is written (h, y, g): its parts along b, up and a. Turning by an angle about a leaves g alone and turns (y, h) like a
-// complex number y + i h that is multiplied by exp(i angle).
+// is written (h, y, g): its parts along b, up and a. Turning by an angle about a does not change g, and turns (y, h)
+// like a complex number y + i h that is multiplied by exp(i angle).
 //
 // The rest direction of link k (from 0) is rest cos(k c) + curl sin(k c), and link k is turned by (k + 1) d, where c is
 // the curl between links and d the bend between links. In the plane, with r = rest and q = curl as complex numbers,
 //   (r cos(k c) + q sin(k c)) exp(i (k+1) d)
 //     = (r - i q)/2 exp(i d) exp(i k (d + c))  +  (r + i q)/2 exp(i d) exp(i k (d - c)),
 // and across it, g = real part of (r_g - i q_g) exp(i k c). So a chain is two phasors, each turned by a constant angle
-// from link to link, and one harmonic g, which goes on by its second difference: g(k+1) - 2 g(k) + g(k-1) = -2
-// versine(c) g(k). Kept as g and its difference, that is as exact for small c as for large. No sine or cosine but the
-// first.
+// from link to link, and one harmonic g, which advances by its second difference: g(k+1) - 2 g(k) + g(k-1) = -2
+// versine(c) g(k). Stored as g and its difference, this is as exact for small c as for large. Only the first sine and
+// cosine are computed.
 
 namespace yuragi::pose {
 namespace {
 
-constexpr std::size_t kStrandsPerBlock = 16;  // as skeleton.hpp, whose vectors may not come in here
+constexpr std::size_t kStrandsPerBlock = 16;  // as in skeleton.hpp, whose vectors must not be included here
 
-/// Components of a bend beyond this are taken as this: what is longer than pi is cut to pi anyway.
+/// Limit for the components of a bend: bends longer than pi are cut to pi anyway.
 constexpr float kMaxComponent_rad = 32.0F;
 constexpr float kMaxBend_rad = 0x1.921fb6p1F;
 
-/// From this many links on a link's share of the bend is at most pi/4.
+/// From this number of links on a link's share of the bend is at most pi/4.
 constexpr std::size_t kLinksOfSmallAngles = 4;
 
-/// A smaller bend is none.
+/// A smaller bend counts as none.
 constexpr float kMinSquare_rad2 = 1e-30F;
 
 struct Phasor {
@@ -41,7 +41,7 @@ struct Phasor {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-/// A phasor of length 1 whose length is put right to first order, so that it stays right through many products.
+/// A phasor of length 1, its length corrected to first order, so that it stays correct through many products.
 [[gnu::always_inline]] inline Phasor normalised(Phasor a) noexcept {
   const math::Lanes correction = 1.5F - 0.5F * (a.re * a.re + a.im * a.im);
   return {a.re * correction, a.im * correction};
@@ -55,7 +55,7 @@ template <bool is_small>
   return {turn.cos, turn.sin};
 }
 
-/// What stays the same along kLaneCount chains.
+/// The constants along kLaneCount chains.
 struct Turns {
   math::Lanes b_east, b_south;  ///< where they bend to
   Phasor with, against;
@@ -125,10 +125,10 @@ template <bool is_small>
                     .z_m = math::load_lanes(in.root_z_m + strand)}};
 }
 
-/// Goes along the chains from root to tip. Joints go to `out`, an axis 16 floats behind the other.
+/// Computes the chains from root to tip. Joints are written to `out`, with the axes 16 floats apart.
 [[gnu::always_inline]] inline void follow(const Chains& chains, std::size_t links, float* out) noexcept {
-  // What changes from link to link fills the registers of AVX2. The turns are read from memory in each round: else gcc
-  // spills some of the links instead, and waits for them (measured: 6.1 ns a link and eight strands, against 3.5).
+  // The variables from link to link fill the registers of AVX2. The turns are read from memory in each round: otherwise
+  // gcc spills some of the links instead, which is slower (measured: 6.1 ns per link and eight strands, against 3.5).
   const Turns* turns = &chains.turns;
   __asm__("" : "+r"(turns) : : "memory");
   Links at = chains.first;
@@ -152,7 +152,7 @@ template <bool is_small>
 template <bool is_small>
 [[gnu::always_inline]] inline void all_joint_positions(const StrandKernelArguments& in) noexcept {
   for (std::size_t block = 0; block < in.blocks; ++block) {
-    // All first links of a block before its chains: the one's arithmetic fills the other's waits.
+    // All first links of a block before its chains, so that the arithmetic of one fills the waits of the other.
     Chains chains[kStrandsPerBlock / math::kLaneCount];
     for (std::size_t part = 0; part < kStrandsPerBlock / math::kLaneCount; ++part) {
       chains[part] = first_links<is_small>(in, block * kStrandsPerBlock + part * math::kLaneCount);
@@ -165,7 +165,7 @@ template <bool is_small>
 }
 
 void joint_positions(const StrandKernelArguments& arguments) noexcept {
-  const StrandKernelArguments in = arguments;  // a copy, which no store to the joints can be taken for a change of
+  const StrandKernelArguments in = arguments;  // a copy, which stores to the joints cannot change
   if (in.links >= kLinksOfSmallAngles) {
     all_joint_positions<true>(in);
   } else {

@@ -8,7 +8,7 @@
 
 namespace yuragi::pose {
 
-/// The arrays of a StrandSkeleton and a StrandPose, in whole blocks, and where the joints go.
+/// The arrays of a StrandSkeleton and a StrandPose, in whole blocks, and the output for the joints.
 struct StrandKernelArguments {
   std::size_t blocks = 0;
   std::size_t links = 0;

@@ -21,7 +21,7 @@ bool has_its_sizes(const StrandSkeleton& skeleton) noexcept {
   return skeleton.links_per_strand > 0;
 }
 
-/// Larger curls are taken as this.
+/// Limit for curls.
 constexpr float kMaxCurl_rad = 32.0F;
 
 }  // namespace

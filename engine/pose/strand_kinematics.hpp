@@ -20,7 +20,7 @@ struct JointPosition {
 
 /// The joints of many strands, in the world: the end of each link. (The roots are the skeleton's.)
 ///
-/// Owns one array, in blocks of 16 strands: coordinate `axis` (0 x, 1 y, 2 z) of the joint behind link `link` is
+/// Owns one array, in blocks of 16 strands: coordinate `axis` (0 x, 1 y, 2 z) of the joint after link `link` is
 /// data()[((block * links + link) * 3 + axis) * 16 + lane], where strand = block * 16 + lane. Also keeps the sine and
 /// cosine of each strand's rest curl, which never change. Allocates when it is made, never afterwards. Thread-safe: no.
 class JointPositions {
@@ -48,14 +48,14 @@ class JointPositions {
   std::vector<float> curl_sin_, curl_versine_;  ///< of each strand's curl between links; the versine is 1 - cosine
 };
 
-/// The one forward kinematics: where the joints are of a skeleton in a pose (what the two mean: skeleton.hpp).
+/// The only forward kinematics of strands: the joints of a skeleton in a pose (their meaning: skeleton.hpp).
 ///
 /// Link i of n (from 1) is its rest direction, turned by i/n of the bend about the horizontal axis up x bend
-/// (Rodrigues). An upright link bent by theta toward (sin phi, -cos phi) so points along (sin theta sin phi, cos theta,
-/// -sin theta cos phi): the paper's tip formula (Chiba, section 3.1) read as a direction, since a link keeps its length
-/// whatever the wind (engine/METHOD.md M13, D1); the paper's z is north, ours south. Links keep their length to 1e-5 of
-/// it, as far as a float at the joint's place can say so. The bend (0, 0) gives the rest pose; every other finite one
-/// has finite joints too: one of more than pi is taken as pi, and a curl beyond 32 rad as 32 rad.
+/// (Rodrigues). An upright link bent by theta toward (sin phi, -cos phi) then points along (sin theta sin phi, cos
+/// theta, -sin theta cos phi): the paper's tip formula (Chiba, section 3.1) read as a direction, because a link keeps
+/// its length in any wind (engine/METHOD.md M13, D1); the paper's z is north, ours south. Links keep their length to
+/// 1e-5 of it, within the precision of a float at the joint's place. The bend (0, 0) gives the rest pose; every finite
+/// bend gives finite joints: bends are limited to pi, and curls to 32 rad.
 ///
 /// World metres. Owns nothing; skeleton, pose and joints must outlive run(). Different jobs may run at the same time.
 /// Realtime-safe: yes. Every SIMD row computes the same bits. Cost: about 0.6 ns a joint of strands of ten links
@@ -64,7 +64,7 @@ struct StrandKinematicsJob {
   const StrandSkeleton* skeleton = nullptr;
   const StrandPose* pose = nullptr;
   std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
-  Part part = {};                             ///< of the blocks: parts may run at the same time
+  Part part = {};                             ///< of the blocks: parts can run at the same time
 
   JointPositions* joints = nullptr;
 

@@ -5,16 +5,15 @@
 #include "engine/math/trig.hpp"
 
 // A turn is a unit quaternion. With a = up x b the axis across the unit vector b toward which the parent bends, its
-// link i of n (from 1) is turned by exp(a angle i / n) after the turn of its strand's root, and what grows there with
-// it.
+// link i of n (from 1) and the strands on it are turned by exp(a angle i / n) after the turn of its strand's root.
 
 namespace yuragi::pose {
 namespace {
 
 constexpr std::size_t kTurnsAtOnce = 16;
-constexpr std::uint32_t kBlock = 16;  // kStrandsPerBlock of skeleton.hpp, whose vectors may not come in here
+constexpr std::uint32_t kBlock = 16;  // kStrandsPerBlock of skeleton.hpp, whose vectors must not be included here
 
-// As in strand_kernels.cpp: longer bends are cut to this, and shorter ones are none.
+// As in strand_kernels.cpp: limit for longer bends; shorter ones count as none.
 constexpr float kMaxComponent_rad = 32.0F;
 constexpr float kMaxBend_rad = 0x1.921fb6p1F;
 constexpr float kMinBendSquare_rad2 = 1e-30F;
@@ -30,7 +29,7 @@ struct Parents {
   alignas(64) float w[kTurnsAtOnce], x[kTurnsAtOnce], y[kTurnsAtOnce], z[kTurnsAtOnce];
 };
 
-/// Those of the turns from `begin` on; what is behind the last turn repeats it.
+/// Loads the turns from `begin` on; after the last turn it is repeated.
 [[gnu::always_inline]] inline void load_parents(const TreeKernelArguments& in, std::size_t begin,
                                                 Parents& out) noexcept {
   const float half_share_of_a_link = 0.5F / static_cast<float>(in.parent_links);
@@ -72,7 +71,7 @@ void turn(const TreeKernelArguments& arguments) noexcept {
       const float bx = half.sin * (south * inverse);
       const float bz = -half.sin * (east * inverse);
 
-      // Their product, its length put right to first order.
+      // Their product, with its length corrected to first order.
       const float pw = parents.w[i];
       const float px = parents.x[i];
       const float py = parents.y[i];
@@ -90,7 +89,7 @@ void turn(const TreeKernelArguments& arguments) noexcept {
   }
 }
 
-/// The rotation matrix of a turn, less the identity, so that no turn leaves every bit of a vector as it is.
+/// The rotation matrix of a turn, minus the identity, so that no turn keeps every bit of a vector.
 struct Rotation {
   math::Lanes xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
@@ -134,8 +133,8 @@ void carry(const TreeKernelArguments& arguments) noexcept {
   float* const __restrict root_y_m = in.carried_root_m[1];
   float* const __restrict root_z_m = in.carried_root_m[2];
   for (std::size_t begin = 0; begin < in.blocks * kBlock; begin += kBlock) {
-    // The roots go to the joints that they grow from (their order: JointPositions). Where those are is computed in SIMD
-    // lanes, and only the loads go one by one.
+    // The roots move to the joints from which they grow (their order: JointPositions). The indices are computed in SIMD
+    // lanes, and only the loads are done one by one.
     alignas(64) std::uint32_t at[kBlock];
     for (std::size_t i = 0; i < kBlock; ++i) {
       const std::uint32_t parent = in.parent[first_strand + begin + i];
@@ -153,7 +152,7 @@ void carry(const TreeKernelArguments& arguments) noexcept {
     Rotation r = {};
     for (std::size_t i = begin; i < begin + kBlock; i += math::kLaneCount) {
       const std::size_t strand = first_strand + i;
-      if (each == 1 || i == begin) {  // else it is that of the whole block
+      if (each == 1 || i == begin) {  // otherwise it is that of the whole block
         r = rotation(turn_part(in.turn.w, each, strand), turn_part(in.turn.x, each, strand),
                      turn_part(in.turn.y, each, strand), turn_part(in.turn.z, each, strand));
       }

@@ -18,7 +18,7 @@ struct TurnArrays {
   std::size_t strands_per_turn = 1;  ///< 1, or 16: a turn for each block
 };
 
-/// The strands of one level at rest, the level that they grow from, and how some of them stand now.
+/// The strands of one level at rest, the level from which they grow, and the present state of some of them.
 struct TreeKernelArguments {
   std::size_t turns = 0;
   const std::uint32_t* parent = nullptr;
@@ -32,21 +32,21 @@ struct TreeKernelArguments {
   const float* parent_bend_south_rad = nullptr;
   const float* parent_joints_m = nullptr;
 
-  TurnArrays turn;  ///< room for `turns` in whole blocks
+  TurnArrays turn;  ///< output for `turns`, in whole blocks
 
-  std::size_t first_block = 0;  ///< of those that are carried
+  std::size_t first_block = 0;  ///< of the carried strands
   std::size_t blocks = 0;
-  float* carried_root_m[3] = {};  ///< from the first strand of that block on
+  float* carried_root_m[3] = {};  ///< beginning with the first strand of that block
   float* carried_rest[3] = {};
   float* carried_curl[3] = {};
 };
 
 struct TreeKernels {
-  /// Are all of these numbers below `limit`, which is at most 2^31?
+  /// Returns true if all of these numbers are below `limit`, which is at most 2^31.
   bool (*all_below)(const std::uint32_t* numbers, std::size_t count, std::uint32_t limit) noexcept;
   /// Parent's turn and bend -> `turn`, for all strands.
   void (*turn)(const TreeKernelArguments&) noexcept;
-  /// `turn`, rest, curl and the parent's joints -> what is `carried_`, for some blocks.
+  /// Computes the `carried_` arrays from `turn`, rest, curl and the parent's joints, for some blocks.
   void (*carry)(const TreeKernelArguments&) noexcept;
 };
 

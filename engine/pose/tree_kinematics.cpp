@@ -13,7 +13,7 @@ namespace {
 constexpr KernelRows<StrandKernels> kTreeStrandRows = YURAGI_KERNEL_ROWS(strand_kernels);
 constexpr KernelRows<TreeKernels> kTreeRows = YURAGI_KERNEL_ROWS(tree_kernels);
 
-/// So many blocks are carried at a time, and stay in the fastest cache until their joints are computed.
+/// So many blocks are processed at a time that they stay in the fastest cache until their joints are computed.
 constexpr std::size_t kBlocksAtOnce = 8;
 /// The places of a level's numbers are computed in 32 bits.
 constexpr std::size_t kMaxNumbers = std::numeric_limits<std::uint32_t>::max();
@@ -28,7 +28,7 @@ std::size_t turn_count(const TreeLevel& level) noexcept {
   return level.strands.padded_count() / strands_per_turn(level);
 }
 
-/// Does every strand of level `index` grow from a link that is there?
+/// Returns true if every strand of level `index` grows from an existing link.
 bool has_its_parents(const TreeSkeleton& tree, std::size_t index, const TreeKernels& kernels) noexcept {
   const TreeLevel& level = tree.levels[index];
   if (index == 0) return level.parent.empty() && level.parent_link.empty();

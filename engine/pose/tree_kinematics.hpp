@@ -15,7 +15,7 @@ struct StrandKernelArguments;
 struct TreeKernelArguments;
 struct TurnArrays;
 
-/// The joints of a tree, in the world, level by level, and what the kinematics needs on the way there.
+/// The joints of a tree, in the world, level by level, and the intermediate values of the kinematics.
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no.
 class TreeJoints {
@@ -36,15 +36,15 @@ class TreeJoints {
 
   std::vector<JointPositions> levels_;
   std::vector<Turns> turns_;
-  std::vector<float> standing_;  ///< how the strands of some blocks stand now: nine arrays
+  std::vector<float> standing_;  ///< the present state of the strands of some blocks: nine arrays
 };
 
-/// The one forward kinematics of a tree: each level is strands (as StrandKinematicsJob) whose roots, rest directions
-/// and curls have gone with the links that they grow from (what that means: TreeLevel in skeleton.hpp).
+/// The only forward kinematics of a tree: each level consists of strands (as in StrandKinematicsJob) whose roots, rest
+/// directions and curls have moved with the links from which they grow (see TreeLevel in skeleton.hpp).
 ///
 /// The turn of a link is that of its strand's root, followed by the link's share of the strand's bend about up x bend.
 /// World metres. Owns nothing; skeleton, pose and joints must outlive run(). Different jobs may run at the same time.
-/// Realtime-safe: yes. Every SIMD row computes the same bits. The rest pose gives the skeleton as it stands.
+/// Realtime-safe: yes. Every SIMD row computes the same bits. The rest pose gives the skeleton unchanged.
 struct TreeKinematicsJob {
   const TreeSkeleton* skeleton = nullptr;
   const TreePose* pose = nullptr;
@@ -55,7 +55,7 @@ struct TreeKinematicsJob {
   enum class Problem : std::uint8_t {
     kNone,
     kMissingPart,   ///< no skeleton, pose or joints
-    kSkeletonSize,  ///< an array of the skeleton has the wrong size, or names a parent that is not there
+    kSkeletonSize,  ///< an array of the skeleton has the wrong size, or names a parent that does not exist
     kPoseSize,
     kJointsSize,  ///< the joints were made for another skeleton
     kRowNotRunnable,
@@ -66,7 +66,7 @@ struct TreeKinematicsJob {
   Problem run() const noexcept;
 
  private:
-  // What the kernels of a level are given.
+  // The arguments of the kernels of a level.
   StrandKernelArguments strands_of(std::size_t level) const noexcept;
   TurnArrays turns_of(std::size_t level) const noexcept;
   TreeKernelArguments carried_from_parents(std::size_t level) const noexcept;

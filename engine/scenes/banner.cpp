@@ -88,20 +88,21 @@ constexpr double kFastestBannerWave_m_s = 12.0;
 /// The longest waves over the shortest.
 constexpr double kBannerBand = 2.0;
 
-/// The free side is so much ahead of the pole, of its distance from it: a wave's front goes up to the free side.
+/// The lead of the waves at the free side, relative to its distance from the pole: a wave's front rises toward the free
+/// side.
 constexpr double kSlant = 0.35;
 
 /// In the longest wave.
 constexpr double kBannerKnotsAWave = 28.0;
 
-/// Half of the waves' height is reached so far below the arm, as a part of the banner's height (and 0.4 of it at most,
-/// where nothing below holds it).
+/// The distance below the arm at which waves have half of their height, as a part of the banner's height (at most 0.4
+/// of it if the lower end is free).
 constexpr double kHeldByArm = 0.4;
 
-/// How far a wave turns the cloth about the pole at its lower end, as a part of how far it turns the free side besides.
+/// The angle by which a wave turns the lower end about the pole, as a part of its further turn of the free side.
 constexpr double kHinge = 0.6;
 
-/// The vane: its frequency in a strong wind, the wind that turns it half as fast, its damping, and friction.
+/// The vane: its frequency in a strong wind, the wind in which it turns half as fast, its damping, and friction.
 constexpr double kArmHz = 0.5;
 constexpr double kArmHalfSpeed_m_s = 0.5;
 constexpr double kArmDamping = 0.7;
@@ -128,7 +129,7 @@ ClothSpec banner_spec(const BannerSettings& settings) {
           .across_stiffness_s2 = 6'000.0};
 }
 
-/// The pole stands at the scene's origin, the cross-arm points to the scene's east.
+/// The pole is at the scene's origin, the cross-arm points to the scene's east.
 ClothEdge banner_edge(const BannerSettings& settings, const Setup& setup) {
   ClothEdge edge(settings.columns);
   const double pitch_m = settings.width_m / static_cast<double>(edge.columns - 1);
@@ -171,7 +172,7 @@ class Banner final : public Scene {
     const auto bow = cloth_.sway_share() * static_cast<float>(2.0 * belly_ * cross_.value) * strength;
     const float wave = cloth_.wave_share() * static_cast<float>(flutter_rad_) * strength;
 
-    // Each row of knots from the pole to the free side, then what hangs between it and the row before.
+    // Each row of knots from the pole to the free side, then the part between it and the row before.
     const std::size_t stride = cloth_.knots().stride;
     const std::span<float> lean = cloth_.lean();
     const auto arm_east = static_cast<float>(arm_.east);
@@ -191,7 +192,7 @@ class Banner final : public Scene {
       }
     }
 
-    // The hybrid's cloth is in the air as its own frame has it, which turns with the arm.
+    // The hybrid's cloth gets the air in its own frame, which turns with the arm.
     const auto [sine, cosine] = math::sin_cos(static_cast<float>(turned_rad_));
     const ClothTurn turn{static_cast<double>(sine), static_cast<double>(cosine)};
     std::fill(gusts_.begin(), gusts_.end(), waves_.values()[0] * static_cast<float>(1.0 / ClothNoise::kLargest));
@@ -201,7 +202,7 @@ class Banner final : public Scene {
   }
 
  private:
-  /// Where the knots of a row are: along the arm, and to its side.
+  /// The positions of the knots of a row: along the arm, and beside it.
   struct Row {
     std::vector<float> ahead_m, aside_m;
   };
@@ -241,7 +242,8 @@ class Banner final : public Scene {
     }
   }
 
-  /// The vane, whose torque goes with the sine of half the angle: so that it turns about from wherever it points.
+  /// Moves the vane, whose torque is proportional to the sine of half the angle, so that it turns back from any
+  /// direction.
   void turn_arm(double dt_s) noexcept {
     const double speed_m_s = wind_.speed_m_s();
     const double per_speed_s_m = speed_m_s > 0.0 ? 1.0 / speed_m_s : 0.0;
@@ -295,10 +297,10 @@ class Banner final : public Scene {
   double width_m_;
   bool turns_;
   double belly_;        ///< over the width
-  double flutter_rad_;  ///< of the free corner's turns to the sides, where a wave of height 1 passes
+  double flutter_rad_;  ///< turn of the free corner to the sides, for a wave of height 1
   double half_flutter_speed_m_s_;
   double wave_speed_;  ///< over the wind's
-  EastSouth arm_;      ///< where the cross-arm points to at rest
+  EastSouth arm_;      ///< direction of the cross-arm at rest
 
   Wind wind_;
   ClothStrength strength_;
@@ -306,14 +308,14 @@ class Banner final : public Scene {
   double knot_link_m_;
   float per_link_m_;
   ClothWaves waves_;                     ///< down the pole, and on
-  std::vector<float> growth_, hinge_;    ///< of each row of joints between the knots' links
+  std::vector<float> growth_, hinge_;    ///< for each row of joints between the knots' links
   std::vector<float> from_pole_;         ///< of each knot column: 0 on the pole, 1 at the free side
-  std::vector<std::size_t> ahead_rows_;  ///< how far ahead of the pole the waves are there: rows, and part of the next
+  std::vector<std::size_t> ahead_rows_;  ///< lead of the waves relative to the pole: rows, and part of the next
   std::vector<float> ahead_part_;
   std::vector<float> gusts_;
   Row row_above_, row_here_;
 
-  math::CriticallyDamped cross_;  ///< -1 to 1: from which side the wind fills the belly
+  math::CriticallyDamped cross_;  ///< -1 to 1: the side from which the wind fills the belly
   ClothSwing vane_;               ///< its rate alone
   double turned_rad_ = 0.0;       ///< of the arm, clockwise from rest
 };

@@ -4,7 +4,7 @@
 
 namespace yuragi::scenes {
 
-/// How fast the waves of a stand of plants run, as a part of the wind 10 m up, which is the wind of the scenes
+/// The speed of the waves of a stand of plants, as a part of the wind at 10 m, which is the wind of the scenes
 /// (`scene_height` of a sensor's calibration is 10 m unless it is set). `plant_height_m`: above 0, at most 5.
 ///
 /// They run at 1.8 times the wind at the tops of the plants, and that is 3.3 u*; the logarithmic profile above a stand

@@ -17,8 +17,8 @@
 namespace yuragi::scenes {
 namespace {
 
-// The second tile against the first: turned by one radian (its cosine and sine, written out so that no library's
-// rounding decides about bits), and larger by the golden ratio.
+// The second tile, relative to the first: turned by one radian (its cosine and sine, written out so that no library's
+// rounding changes bits), and larger by the golden ratio.
 constexpr double kTurnCos = 0x1.14a280fb5068cp-1;
 constexpr double kTurnSin = 0x1.aed548f090ceep-1;
 constexpr double kPeriodRatio = std::numbers::phi;
@@ -106,7 +106,7 @@ CarriedNoiseSpec CarriedNoise::band(double shortest_m, double longest_m, std::ui
   constexpr double kMaxWaves = 8.0;
   constexpr double kSamplesAWave = 4.5;
   const double period_m = kMaxWaves * longest_m;
-  // The second tile is larger, and has as many samples.
+  // The second tile is larger, and has the same number of samples.
   const double largest_m = has_two_tiles ? kPeriodRatio * period_m : period_m;
   const auto samples = static_cast<std::size_t>(std::ceil(kSamplesAWave * largest_m / shortest_m));
   return {.period_m = period_m,
@@ -176,7 +176,7 @@ void CarriedNoise::sample(const CarriedPlaces& places, SimdRow row, std::span<fl
 double CarriedNoise::largest_change(double speed_m_s, double step_m_s, double dt_s) const noexcept {
   double change = 0.0;
   for (const Tile& tile : tiles_) {
-    // At each speed up to speed_m_s, the level that is read then is shifted by that speed.
+    // The pick moves to the next level while the speed doubles, from where the waves of level 0 are too fine.
     double of_tile = 0.0;
     constexpr int kSpeeds = 64;
     for (int i = 1; i <= kSpeeds; ++i) {

@@ -8,26 +8,26 @@
 #include "engine/math/portable.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
-// The bound of largest_joint_step_m. A spline through the knots changes by no more than they do. The hybrid's leans
-// are two numbers that change by at most R a second each (cloth_dynamics.hpp), and count by h. A lean that changes by d
-// turns its link by at most 2 d (lean.hpp), and a joint moves by no more than the links before it together:
+// The bound of largest_joint_step_m. A spline through the knots changes by no more than they do. The hybrid's leans are
+// two numbers that change by at most R per second each (cloth_dynamics.hpp), with the weight h. A lean that changes by
+// d turns its link by at most 2 d (lean.hpp), and a joint moves by no more than the links before it together:
 //   2 length (lean_step + h sqrt(2) R dt),
 // and by the turn times its distance from the axis, which is that of its fixed joint and its thread's length at most.
-// And never by more than from one end of its reach to the other, twice that distance.
+// And by at most its whole range, twice that distance.
 
 namespace yuragi::scenes {
 namespace {
 
-/// Links in a band: its leans take about 27 kB of 200 columns, which the nearest cache holds.
+/// Links in a band: with 200 columns its leans take about 27 kB, which fits into the nearest cache.
 constexpr std::size_t kBandLinks = 16;
 
-/// How fast the hybrid's leans may go: some four times as fast as a swinging curtain's do.
+/// Maximum rate of the hybrid's leans: about four times that of a swinging curtain.
 constexpr double kMaxLean_per_s = 8.0;
 
-/// What is left of the wave as detail where the cloth is all dynamics.
+/// The remaining share of the wave as detail if the cloth is all dynamics.
 constexpr double kDetail = 0.4;
 
-/// How much stronger than the wind, and how far aside of it, the strongest gusts blow.
+/// The strongest gusts: how much stronger than the wind, and how far to its side.
 constexpr double kGustAlong = 0.4;
 constexpr double kGustAside = 0.5;
 
@@ -185,7 +185,7 @@ void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
   spline_.spread(turned(lean_, knots_.stride, turn), row_);
   if (spec_.is_first_column_fixed) turn_edge(turn);
 
-  // Of the rest lean the dynamics keep all. Rest alone is what the projection knows as rest, to the bit.
+  // The dynamics keep the whole rest lean. For the projection the rest lean alone is the rest pose, exactly.
   const auto kept = static_cast<float>(1.0 - (1.0 - spec_.hybrid) * (1.0 - rest_kept));
   const auto sine = static_cast<float>(turn.sine);
   const auto cosine = static_cast<float>(turn.cosine);

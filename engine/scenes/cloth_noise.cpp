@@ -6,9 +6,9 @@
 namespace yuragi::scenes {
 namespace {
 
-// The tiles are read along no simple slope, so that a cloth whose waves always run the same way sees none come round:
-// by 67.5 degrees (cosine and sine), whose slope on the first tile is 1 + sqrt(2), and on the second, which is turned
-// by another radian, is as far from any simple one.
+// The tiles are read along an irrational slope, so that a cloth whose waves always run the same way never shows a
+// repeat: 67.5 degrees (cosine and sine), whose slope on the first tile is 1 + sqrt(2); on the second tile, turned by
+// another radian, it is as far from a simple slope.
 constexpr double kAlongNoiseX = 0.3826834323650898;
 constexpr double kAlongNoiseZ = 0.9238795325112867;
 

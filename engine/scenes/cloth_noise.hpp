@@ -9,18 +9,18 @@
 
 namespace yuragi::scenes {
 
-/// A noise of one band of wavelengths (CarriedNoise::band) that is carried over a cloth, or over the ground below it.
-/// Mean 0. Its coordinates are the caller's, metres. Allocates when it is made and in places(). Thread-safe: no.
+/// A noise of one band of wavelengths (CarriedNoise::band) that moves over a cloth, or over the ground below it. Mean
+/// 0. Its coordinates are the caller's, metres. Allocates when it is made and in places(). Thread-safe: no.
 /// Realtime-safe: the rest.
 class ClothNoise {
  public:
   /// Waves of shortest_m to longest_m, at least an octave apart.
   ClothNoise(double shortest_m, double longest_m, std::uint64_t seed, SimdRow row);
 
-  /// Where it is to be read.
+  /// The places at which to read it.
   CarriedPlaces places(std::span<const float> x_m, std::span<const float> z_m) const;
 
-  /// It is carried toward +x and +z for dt_s.
+  /// Moves it toward +x and +z for dt_s.
   void shift(double toward_x_m_s, double toward_z_m_s, double dt_s) noexcept;
 
   /// One value a place, of variance 1.
@@ -28,12 +28,11 @@ class ClothNoise {
   /// The same, saturated: of variance near 0.8.
   void sample(const CarriedPlaces& places, std::span<float> out) const noexcept;
 
-  /// No more than this does a value that is read, or sampled, change in a tick, while it is carried at no more than
-  /// speed_m_s.
+  /// The maximum change of a value that is read, or sampled, in a tick, at up to speed_m_s.
   double largest_read_change(double speed_m_s, double dt_s) const noexcept;
   double largest_change(double speed_m_s, double dt_s) const noexcept;
 
-  /// What is saturated is never farther from 0 than this.
+  /// The limit of saturated values, in both directions.
   static constexpr double kLargest = 2.2;
 
   /// 2.2 tanh(value / 2.2) by its continued fraction, which reaches 2.2 at three times that. Its slope is 1 at most.

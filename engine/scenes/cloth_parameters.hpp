@@ -6,7 +6,7 @@
 
 namespace yuragi::scenes {
 
-// What a cloth looks like, which is the viewer's matter: nothing here moves by it.
+// The look of a cloth, for the viewer only: it does not change the motion.
 
 inline const Parameter kClothColor = {
     .name = "color",

@@ -8,13 +8,12 @@
 
 namespace yuragi::scenes {
 
-/// How strongly a cloth flutters, 0 to 1: by u^2 / (u^2 + half^2) of the wind u, which grows with the square of a weak
-/// wind and never reaches 1; a quarter of a second late (2 / omega), for waves need some time to grow.
+/// The strength of a cloth's flutter, 0 to 1: u^2 / (u^2 + half^2) for the wind u, which grows with the square of a
+/// weak wind and never reaches 1; a quarter of a second late (2 / omega), because waves need some time to grow.
 ///
-/// From one tick of dt to the next it changes by at most largest_step(dt), whatever the wind does: it follows a target
-/// that stays between 0 and 1, so that its rate never exceeds 2 w / e (CriticallyDamped's impulse response, see
-/// Wind). Calm from the beginning stays 0, and what has come closer to 0 than 1e-9 is 0. Thread-safe: no; one
-/// owner. Realtime-safe: yes.
+/// From one tick of dt to the next it changes by at most largest_step(dt), in any wind: it follows a target that stays
+/// between 0 and 1, so that its rate never exceeds 2 w / e (CriticallyDamped's impulse response, see Wind). Calm
+/// from the beginning stays 0, and values below 1e-9 become 0. Thread-safe: no; one owner. Realtime-safe: yes.
 class ClothStrength {
  public:
   void step(double wind_m_s, double half_m_s, double dt_s) noexcept {

@@ -8,12 +8,12 @@
 namespace yuragi::scenes {
 
 /// A damped oscillator whose frequency and damping may change while it swings: q'' + c q' + w^2 (q - target) = 0,
-/// stepped by the implicit midpoint rule, which is stable for any step and takes no energy of its own from the swing.
-/// No library function, so the same bits on every machine.
+/// stepped by the implicit midpoint rule, which is stable for any step and adds no damping. No library function, so the
+/// same bits on every machine.
 ///
-/// Neither how far it is from 0 nor how fast it goes ever exceeds the limits that it is given, so that it cannot be
-/// driven beyond them by a frequency that changes with its swing. What has come closer to 0 than 1e-6 while its target
-/// is 0 comes to rest there. Thread-safe: no; one owner. Realtime-safe: yes.
+/// Neither its value nor its rate exceeds the given limits, so that a frequency that changes with its swing cannot
+/// drive it beyond them. Below 1e-6 with a target of 0 it comes to rest. Thread-safe: no; one owner. Realtime-safe:
+/// yes.
 struct ClothSwing {
   double value = 0.0;
   double rate_per_s = 0.0;
@@ -33,8 +33,8 @@ struct ClothSwing {
     value = std::clamp(value + dt_s * mean_rate_per_s, -limits.value, limits.value);
   }
 
-  /// The same for what has no value but only a way to its target (a direction): steps the rate and returns its mean
-  /// during dt_s, which is within the limit as well.
+  /// The same for a quantity that has no value but only a distance to its target (a direction): steps the rate and
+  /// returns its mean during dt_s, which is also within the limit.
   double pull(double way, double natural_hz, double damping_per_s, double largest_rate_per_s, double dt_s) noexcept {
     const double before_per_s = rate_per_s;
     const double w = 2.0 * kPi * natural_hz;

@@ -10,7 +10,7 @@ namespace {
 /// directions and that length.
 constexpr float kUnitDifference = 0.619F;
 
-/// As many rows as half a wave is long, in the middle of the band.
+/// Half the length of a wave in the middle of the band, in rows.
 std::size_t half_wave_rows(double shortest_m, double longest_m, double step_m) {
   const double half_wave_m = 0.5 * std::sqrt(shortest_m * longest_m);
   return static_cast<std::size_t>(std::max(std::nearbyint(half_wave_m / step_m), 1.0));

@@ -8,33 +8,34 @@
 
 namespace yuragi::scenes {
 
-/// Where the waves of a cloth are read: rows at even steps of the way that they run, in each of them the same columns.
+/// The places at which the waves of a cloth are read: rows at even steps in the direction of the waves, with the same
+/// columns in each.
 struct ClothWaveGrid {
   double first_m = 0.0;  ///< the first row
   double step_m = 0.1;   ///< above 0
   std::size_t rows = 1;
   std::span<const float> across_m;  ///< each column, across the way; at least one
-  double slant = 0.0;  ///< how much later, of its place across the way, a column has the waves: their fronts lean
+  double slant = 0.0;  ///< delay of the waves with a column's position across their direction: their fronts lean
 };
 
-/// Waves that run along a cloth from its fixed edge to its free one: a ClothNoise of which only what runs counts, by
-/// how much it differs from half a wave behind. (Along a line, noise of two dimensions is read with its waves of all
-/// directions, of which those that lie nearly along the line look long and slow: they are taken out.) Mean 0, variance
-/// near 0.8, within ClothNoise::kLargest. Allocates when it is made. Thread-safe: no. Realtime-safe: yes.
+/// Waves that run along a cloth from its fixed edge to its free one: a ClothNoise, minus its value half a wave behind,
+/// which keeps only running waves. (Along a line, noise of two dimensions has waves of all directions, of which those
+/// nearly parallel to the line look long and slow: they are removed.) Mean 0, variance near 0.8, within
+/// ClothNoise::kLargest. Allocates when it is made. Thread-safe: no. Realtime-safe: yes.
 class ClothWaves {
  public:
   /// Waves of shortest_m to longest_m, at least an octave apart.
   ClothWaves(double shortest_m, double longest_m, const ClothWaveGrid& grid, std::uint64_t seed, SimdRow row);
 
-  /// They run on for dt_s, at speed_m_s.
+  /// Moves them for dt_s, at speed_m_s.
   void shift(double speed_m_s, double dt_s) noexcept { noise_.shift(speed_m_s, 0.0, dt_s); }
 
   void sample() noexcept;
 
-  /// What was sampled: row after row, a value a column.
+  /// The samples: row after row, a value per column.
   std::span<const float> values() const noexcept { return std::span(values_).first(count_); }
 
-  /// No more than this does a value change in a tick, at no more than speed_m_s.
+  /// The maximum change of a value in a tick, at up to speed_m_s.
   double largest_change(double speed_m_s, double dt_s) const noexcept;
 
  private:

@@ -14,7 +14,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// Large, as the paper has it for fur: smooth from hair to hair.
+/// Large, as in the paper for fur: smooth from hair to hair.
 constexpr double kCoatBeta = 3.0;
 
 using Vector = std::array<double, 3>;
@@ -74,8 +74,8 @@ Coat make_coat(const CoatSpec& spec) {
     const Vector root = {a_m * u, b_m * ring * std::cos(turn_rad), c_m * ring * std::sin(turn_rad)};
     const Vector normal = unit({root[0] / (a_m * a_m), root[1] / (b_m * b_m), root[2] / (c_m * c_m)});
 
-    // Where it lies to: backward and down, in the body's plane, with locks that part. At the front end only backward,
-    // so that the whorl that they all lie away from is on the ground.
+    // Direction of its lie: backward and down, in the body's plane, with locks that part. At the front end only
+    // backward, so that the whorl from which all hairs lie away is on the ground.
     const double front = std::max(normal[0], 0.0);
     const Vector wish = {-1.0, -0.55 * (1.0 - front * front), 0.0};
     const Vector along_body = sum(wish, scaled(-dot(wish, normal), normal));

@@ -110,30 +110,30 @@ constexpr double kCurtainGravity_m_s2 = 9.81;
 constexpr double kCurtainBand = 3.0;
 constexpr double kHemWaves = 0.6;
 
-/// The longest gusts that it breathes with, over the longest bulges, the longest of them over the shortest, and how
-/// much they fill it at most, over what bulges do: where its flutter is a third of a storm's.
+/// The longest gusts that it breathes with, relative to the longest bulges, the ratio of the longest to the shortest of
+/// them, and how much they fill it at most, relative to bulges: when its flutter is a third of a storm's.
 constexpr double kBreathWaves = 3.0;
 constexpr double kBreathBand = 2.0;
 constexpr double kBreath = 4.0;
 
-/// Of a hanging chain: its first frequency over sqrt(g / L) / 2 pi (half the first zero of the Bessel function J0), and
-/// the second over the first. How much of a column's swing is in the second.
+/// A hanging chain's first frequency over sqrt(g / L) / 2 pi (half the first zero of the Bessel function J0), the ratio
+/// of the second to the first, and the share of the second in a column's swing.
 constexpr double kChainFirstMode = 1.2024127788478890;
 constexpr double kChainSecondPerFirst = 2.2954172674276943;
 constexpr double kSecondShare = 0.2;
 
-/// tan(a) of a part of the curtain: nothing blows or swings it farther (78.7 degrees), or faster.
+/// Maximum tan(a) of a part of the curtain (78.7 degrees), and its maximum rate.
 constexpr double kMaxPull = 5.0;
 constexpr double kMaxPull_per_s = 20.0;
 
 /// No wave passes faster: 0.1 m a tick, a quarter of the hem's shortest.
 constexpr double kFastestCurtainWave_m_s = 6.0;
 
-/// What hangs at the hem, over the weight of the cloth: as far as s along it, all that is below is (1 - s) of the cloth
-/// and the hem, and the wind pulls at (1 - s) of it.
+/// The hem's weight over that of the cloth: at s along the cloth, the part below has the weight (1 - s) of the cloth
+/// plus the hem, and the wind acts on (1 - s) of it.
 constexpr double kHemWeight = 0.25;
 
-/// How much of the wind's force its sides take, which spills past them; the middle takes all.
+/// The share of the wind's force on its sides, past which it spills; the middle gets all of it.
 constexpr double kSideForce = 0.75;
 
 ClothSpec curtain_spec(const CurtainSettings& settings) {
@@ -156,7 +156,7 @@ ClothEdge curtain_edge(const CurtainSettings& settings, const Setup& setup) {
   const double first_phase_rad = 2.0 * kPi * random.uniform(0);
   const double second_phase_rad = 2.0 * kPi * random.uniform(1);
   for (std::size_t column = 0; column < edge.stride(); ++column) {
-    // No two folds are alike: their phase and depth stray slowly along the curtain.
+    // No two folds are equal: their phase and depth vary slowly along the curtain.
     const double along = static_cast<double>(column) / static_cast<double>(edge.columns - 1);
     const double stray = std::sin(2.0 * kPi * 1.7 * along + first_phase_rad);
     const double fold = std::sin(2.0 * kPi * settings.folds * along + 0.9 * stray + second_phase_rad) *
@@ -167,7 +167,7 @@ ClothEdge curtain_edge(const CurtainSettings& settings, const Setup& setup) {
     edge.y_m[column] = static_cast<float>(setup.placement.y_m + height_m + settings.clearance_m);
     edge.z_m[column] = static_cast<float>(setup.placement.z_m + place.south);
 
-    // The hem's folds are half as deep again.
+    // The hem's folds are deeper by a half.
     const EastSouth lean =
         turned_by_heading(setup.placement, 0.0, std::tan(0.5 * std::atan(0.5 * depth_m * fold / height_m)));
     edge.lean_east[column] = static_cast<float>(lean.east);
@@ -238,7 +238,7 @@ class Curtain final : public Scene {
     swing(sideways_, sideways_.value, along_m_s * per_speed * blown_out(load), first_hz_, dt_s);
     const auto sideways = static_cast<float>(sideways_.value);
 
-    // The flutter runs down, sooner where the wind tightens the cloth.
+    // The flutter runs down, faster if the wind tightens the cloth.
     history_.push(flutter_now_, dt_s);
     operators::PropagationJob{.history = &history_,
                               .base = still_,
@@ -331,7 +331,7 @@ class Curtain final : public Scene {
     return sine / std::sqrt(1.0 - sine * sine);
   }
 
-  /// `stretched` by so much, it swings faster.
+  /// A larger `stretched` makes it swing faster.
   void swing(ClothSwing& part, double stretched, double target, double calm_hz, double dt_s) const noexcept {
     const double hz = calm_hz * std::sqrt(std::sqrt(1.0 + stretched * stretched));
     part.step(target, hz, 4.0 * kPi * hz * damping_, {kMaxPull, kMaxPull_per_s}, dt_s);
@@ -340,9 +340,9 @@ class Curtain final : public Scene {
   SimdRow row_;
   double half_sway_speed_m_s_;
   double give_sideways_;
-  double largest_sine_;  ///< of the angle that the wind blows it to
+  double largest_sine_;  ///< of the angle to which the wind blows it
   double bulges_;
-  double flutter_;  ///< a lean: the hem's, where a wave of height 1 passes
+  double flutter_;  ///< a lean: the hem's, for a wave of height 1
   double half_flutter_speed_m_s_;
   double wave_speed_;  ///< over the wind's
   double damping_;
@@ -357,7 +357,7 @@ class Curtain final : public Scene {
   CarriedPlaces gust_places_, breath_places_, hem_places_;
   std::vector<float> gust_, breath_, flutter_now_;  ///< each knot column's, like the next
   std::vector<float> out_;                          ///< how far it is blown out: a tangent
-  std::vector<double> side_;                        ///< its part of the wind's force
+  std::vector<double> side_;                        ///< its share of the wind's force
   std::vector<ClothSwing> first_, second_;
   ClothSwing sideways_;
   std::vector<float> still_;

@@ -24,11 +24,11 @@
 //   project  the wind lifts the flag and turns it downwind: the base sway; and the waves turn its      Cloth
 //            links to the sides, growing toward the fly
 //
-// That they propagate is the shifting operator's work: what a link reads was at the hoist when the waves were as far
-// back as the link is from it, at any speed, also one that changes. So the frequency of the flutter goes with the wind
-// (Taneda 1968, Waving motions of flags; Shelley and Zhang 2011, Flapping and bending bodies interacting with fluid
-// flows: f L / U from 0.35 to 0.6, and amplitudes that grow to the fly), and the waves are not the wind's own gusts,
-// which are longer and slower: a flag flutters by itself.
+// The shifting operator makes them propagate: a link reads the value that was at the hoist earlier, by the link's
+// distance from it, at any speed, also a changing one. So the frequency of the flutter goes with the wind (Taneda 1968,
+// Waving motions of flags; Shelley and Zhang 2011, Flapping and bending bodies interacting with fluid flows: f L / U
+// from 0.35 to 0.6, and amplitudes that grow to the fly), and the waves are not the wind's own gusts, which are longer
+// and slower: a flag flutters by itself.
 //
 // Drag and weight lift it: tan(lift) = (u / u_h)^2, where the drag 0.5 rho C_D u^2 is the weight m g of the cloth: at
 // 3 m/s for light nylon of 0.07 kg/m2 with the C_D of 0.12 of a fluttering flag (Munson and others, Fundamentals of
@@ -38,10 +38,10 @@
 // fronts of the waves lean: the lower, the later. At the free corners of the fly nothing holds the cloth: waves turn it
 // farther there, and it curls, the lower corner more.
 //
-// Row 0 is the hoist, from top to bottom. At rest the flag hangs limp beside its pole, for so does a real one when
-// there is no wind: each thread nearly straight down from where it is fixed, out toward the scene's north by `droop`.
-// It is lifted as a hanging thing is that the wind blows against; and since a limp flag may swing to any side, a wind
-// that turns, or that comes back from elsewhere, takes it along without a jump.
+// Row 0 is the hoist, from top to bottom. At rest the flag hangs limp beside its pole, like a real one without wind:
+// each thread nearly straight down from where it is fixed, out toward the scene's north by `droop`. It is lifted like
+// any hanging thing in the wind; and because a limp flag can swing to any side, a wind that turns, or returns from
+// another direction, moves it without a jump.
 //
 // The bound of largest_joint_step_m. A link's lean is l = tan(lift / 2) downwind, turned by the wave's angle psi. l is
 // an oscillator that a vector of length 1 at most drives: it is never longer than G = largest_gain and changes by at
@@ -110,28 +110,29 @@ const Fields<FlagSettings> kFlagFields = {
     kClothImage,
 };
 
-/// No wave runs faster: 0.2 m a tick, so that the shortest are seen to run, and not to jump.
+/// Maximum speed of a wave: 0.2 m a tick, so that the shortest ones visibly run, and do not jump.
 constexpr double kFastestWave_m_s = 12.0;
 
-/// The longest waves over the shortest, the edge's longest over the longest, and where along the flag the edge begins.
+/// Ratios of the longest waves to the shortest, and of the edge's longest to the longest, and the position along the
+/// flag at which the edge begins.
 constexpr double kFlagBand = 2.0;
 constexpr double kFlagEdgeWaves = 1.0 / 3.0;
 constexpr double kFlagEdgeBegins = 0.6;
 
-/// How much the noise changes from the top to the bottom, against its change along the flag: a wave's front goes from
-/// top to bottom nearly straight.
+/// The noise's change from the top to the bottom, relative to its change along the flag: a wave's front is nearly
+/// straight from top to bottom.
 constexpr double kHeightOnNoise = 0.3;
 
-/// How far the waves' fronts lean from the hoist: the tangent, which makes 35 degrees of the cloth.
+/// The lean of the waves' fronts from the hoist: the tangent, which becomes 35 degrees of the cloth.
 constexpr double kFoldSlant = 0.7;
 
-/// How much farther the waves turn the cloth at the lower fly corner and at the upper, of what they do beside it, and
-/// where along the flag that begins.
+/// The additional turn of the cloth by the waves at the lower and the upper fly corner, relative to the cloth beside
+/// it, and the position along the flag at which it begins.
 constexpr double kLowerCurl = 0.9;
 constexpr double kUpperCurl = 0.45;
 constexpr double kCurlBegins = 0.72;
 
-/// In the longest; the edge's shortest waves then have five.
+/// In the longest waves; the edge's shortest waves then have five.
 constexpr double kKnotsAWave = 32.0;
 
 constexpr double kFlagLiftDamping = 0.7;
@@ -146,15 +147,16 @@ ClothSpec flag_spec(const FlagSettings& settings) {
           .skin_drag_per_m = 1.0 * drag_per_m(settings.half_lift_speed_m_s)};
 }
 
-/// How much farther out the lowest thread hangs than the highest: where their ends are nearest to each other. With
-/// threads of length l at an angle d, hoist h apart, and d as small a step as this, their distance squared is h^2 - 2 h
-/// l step sin(d) + l^2 step^2, which is least, (h cos(d))^2, at h sin(d) / l. No thread hangs to the other side.
+/// The angle between the lowest thread and the highest, from the position at which their ends are nearest to each
+/// other. With threads of length l at an angle d, hoist h apart, and d as small a step as this, their distance squared
+/// is h^2 - 2 h l step sin(d) + l^2 step^2, which is least, (h cos(d))^2, at h sin(d) / l. No thread hangs to the other
+/// side.
 double droop_fan_rad(const FlagSettings& settings) {
   const double droop_rad = settings.droop_deg * kRadPerDeg;
   return std::min(settings.hoist_m / settings.length_m * std::sin(droop_rad), 2.0 * droop_rad);
 }
 
-/// How far a thread that begins so far down the pole (0 the top, 1 the bottom) hangs out.
+/// The droop of a thread that begins at this position on the pole (0 the top, 1 the bottom).
 double droop_at_deg(const FlagSettings& settings, double along) {
   return settings.droop_deg + (along - 0.5) * droop_fan_rad(settings) / kRadPerDeg;
 }
@@ -211,7 +213,7 @@ class Flag final : public Scene {
   }
 
   void project(double dt_s) noexcept override {
-    // How far the wind lifts it, as a lean toward where it blows: tan(lift / 2), from tan(lift).
+    // The lift by the wind, as a downwind lean: tan(lift / 2), from tan(lift).
     const double speed_m_s = wind_.speed_m_s();
     const double s = speed_m_s / half_lift_speed_m_s_;
     const double tangent = s * s;
@@ -250,7 +252,7 @@ class Flag final : public Scene {
       }
     }
 
-    // It gives up its droop and its folds as it is lifted, by the square of the lift's cosine.
+    // It loses its droop and its folds as it is lifted, by the square of the lift's cosine.
     const double square = lift_east_.value * lift_east_.value + lift_south_.value * lift_south_.value;
     const double cosine = (1.0 - square) / (1.0 + square);
     for (std::size_t i = 0; i < stride; ++i)
@@ -313,7 +315,7 @@ class Flag final : public Scene {
     return curl;
   }
 
-  /// How far below the top each knot column is, as the noise reads it.
+  /// Each knot column's distance below the top, for reading the noise.
   static std::vector<float> heights_m(const Cloth& cloth, double hoist_m) {
     std::vector<float> down_m;
     for (std::size_t i = 0; i < cloth.knots().stride; ++i) {
@@ -322,7 +324,7 @@ class Flag final : public Scene {
     return down_m;
   }
 
-  /// The knots from `begins` on, as a part of the way to the fly.
+  /// The knots from `begins` on, which is a part of the length.
   ClothWaveGrid wave_grid(const FlagSettings& settings, double begins) const {
     std::size_t first = 0;
     while (cloth_.along(first) < begins) ++first;
@@ -336,7 +338,7 @@ class Flag final : public Scene {
 
   double half_lift_speed_m_s_;
   double lift_hz_;
-  double flutter_rad_;  ///< of the fly's turns to the sides, where a wave of height 1 passes
+  double flutter_rad_;  ///< turn of the fly to the sides, for a wave of height 1
   double half_flutter_speed_m_s_;
   double wave_speed_;  ///< over the wind's
   double edge_flutter_;

@@ -25,7 +25,7 @@
 // A flame (Chiba, section 2-2, figure 4b), as a texture on an upright panel or as the shape of a body:
 //
 //   shift    two noises rise, one faster than the other, so that tongues change as they rise        LayeredNoise
-//   sample   the noise shows only above a threshold that rises from the foot to the top             ThresholdRampJob
+//   sample the noise shows only above a threshold that rises from the foot to the top             ThresholdRampJob
 //   project  what shows is the heat, which indexes a color ramp; the body's points are moved        DisplacementJob
 //            along their normals by the same noise, and its rows by the wind                        FlameAxis
 //
@@ -41,34 +41,34 @@
 // it, and shows the bent flame as it would be seen.
 //
 // Heat changes in a tick of dt by at most 1.5 / edge (the soft edge's slope) times the change of noise minus threshold:
-// the layers' largest change while they rise by rise_speed dt, what a puff of 2 pi f dt does, and what catching fire
-// does, w dt / e of the whole range of thresholds.
+// the layers' largest change while they rise by rise_speed dt, plus 2 pi f dt of a puff, plus w dt / e of the whole
+// range of thresholds while catching fire.
 
 namespace yuragi::scenes {
 namespace {
 
-/// A tile is crossed by the rising gas in so many seconds: its samples are 0.04 s apart, so that nothing is finer than
-/// what ticks of 1/60 s show (|k| U < pi rate). It lies at a slant, so that nothing repeats after that time.
+/// The time in which the rising gas crosses a tile, s: its samples are 0.04 s apart, so that nothing is finer than
+/// ticks of 1/60 s can show (|k| U < pi rate). The tile is slanted, so that nothing repeats after that time.
 constexpr double kCrossed_s = 10.24;
 constexpr std::size_t kNoiseSamples = 256;
-constexpr double kMinWaves = 28.0;  ///< a tile: no tongue is longer than nine tenths of a metre at 2.5 m/s
+constexpr double kMinWaves = 28.0;  ///< per tile: no tongue is longer than nine tenths of a metre at 2.5 m/s
 constexpr double kSecondFaster = 1.25;
 
-/// How much of a tile the flame is wide. Its height is rise_speed's: tongues are four times as long as they are wide.
+/// The flame's width, as a part of a tile. Its height follows from rise_speed: tongues are four times as long as wide.
 constexpr double kWidthOfTile = 0.078125;
 
-/// The thresholds at the foot and at the top, and the soft edge, in standard deviations of the noise. Up the flame they
-/// rise as the cube of the height; at the foot of the inner shells they are lower by so much, at the top by nothing.
+/// The thresholds at the foot and at the top, and the soft edge, in standard deviations of the noise. Upward they rise
+/// as the cube of the height; at the foot of the inner shells they are lower by this, at the top by nothing.
 constexpr double kFootThreshold = -3.1;
 constexpr double kTopThreshold = 1.5;
 constexpr double kEdge = 4.5;
 constexpr std::array<double, 3> kHotter = {0.0, 0.9, 1.8};
 constexpr double kHotterPanel = 0.9;
 
-/// What puffing lowers the threshold by at most, for a standard deviation of the whole heat of 1 (a part of its mean).
-/// Measured.
+/// The maximum reduction of the threshold by puffing, for a standard deviation of the whole heat of 1 (relative to its
+/// mean). Measured.
 constexpr double kPuff = 15.5;
-/// It grows as it rises, until this part of the way.
+/// A puff grows as it rises, up to this part of the way.
 constexpr double kPuffGrown = 0.6;
 /// A puff's pace wanders by a tenth, within seconds; and the wind that halves its power.
 constexpr double kPuff_hz_sqrt_m = 1.5;
@@ -79,10 +79,10 @@ constexpr double kPuffless_m_s = 8.0;
 /// How fast a flame catches fire.
 constexpr double kKindle_rad_s = 1.8;
 
-/// The axis sways by so much of `flicker`, a lean.
+/// The axis sways by this part of `flicker`, a lean.
 constexpr double kWobblePerFlicker = 0.2;
 
-/// A point is never moved farther inward than this part of its distance from the axis.
+/// A point is moved inward by at most this part of its distance from the axis.
 constexpr float kInward = 0.9F;
 
 constexpr std::array<std::string_view, 2> kFlameForms = {"texture", "shape"};
@@ -238,7 +238,7 @@ class Flame final : public Scene {
     }
     noise_.sample(row_, values_);
 
-    // As the flame kindles the thresholds come down from where nothing shows.
+    // As the flame kindles the thresholds come down from a level at which nothing shows.
     const double unlit = (1.0 - kindled_.value) * (noise_.highest() - kFootThreshold + kHotter.back() + puff_);
     operators::ThresholdRampJob{.noise = values_,
                                 .along = along_,
@@ -251,7 +251,7 @@ class Flame final : public Scene {
   }
 
   void project(double /*dt_s*/) noexcept override {
-    if (body_.is_panel) return;  // its colors are all that there is to it
+    if (body_.is_panel) return;  // its pose consists of colors alone
 
     // The shape's points move along their normals, by the noise.
     std::vector<float>& displacement_m = std::get_if<pose::SurfacePose>(&pose_)->displacement_m;
@@ -267,8 +267,8 @@ class Flame final : public Scene {
   }
 
   /// The panel's points do not move at all. The body's move by no more than kindled flicker radius noise, cut inward,
-  /// which makes no step larger, and with their row; up and down also with its slope, by their distance from the axis.
-  /// In a tick `kindled` changes by at most w dt / e, the noise by what rises past.
+  /// which makes no step larger, plus the movement of their row; up and down also by its slope, times their distance
+  /// from the axis. In a tick `kindled` changes by at most w dt / e, the noise by the rise.
   double largest_joint_step_m(double dt_s) const noexcept override {
     if (body_.is_panel) return 0.0;
     const double kindled_step = std::min(kKindle_rad_s * dt_s / std::numbers::e, 1.0);
@@ -312,8 +312,8 @@ class Flame final : public Scene {
         pose_(pose::rest_pose(skeleton_)),
         body_(std::move(body)) {}
 
-  /// Where a part of the flame, `v` of the way from its foot to its top, is along the rising threshold. The foot of a
-  /// puff's wave leaves the flame's foot as its top reaches the next one's.
+  /// The position along the rising threshold of a part of the flame at `v` of the way from its foot to its top. The
+  /// foot of a puff's wave leaves the flame's foot when its top reaches the next one's.
   double along_at(double v, double hotter) const noexcept {
     double wave = puffed_ - v * height_m_ * puff_hz_ / rise_m_s_;
     wave -= std::floor(wave);
@@ -322,7 +322,7 @@ class Flame final : public Scene {
     return v * v * v - (puff_ * grown * sine + hotter * std::max(1.0 - v, 0.0)) / (kTopThreshold - kFootThreshold);
   }
 
-  /// Where each point of the body is along the rising threshold.
+  /// The position of each point of the body along the rising threshold.
   void show_on_shells() noexcept {
     const auto& surface = *std::get_if<pose::SurfaceSkeleton>(&skeleton_);
     const std::size_t around = surface.columns / surface.shells;
@@ -335,12 +335,12 @@ class Flame final : public Scene {
     }
   }
 
-  /// The same for the panel: at each height it shows the part of the bent flame that is as high, where it is.
+  /// The same for the panel: at each height it shows the part of the bent flame at that height.
   void show_on_panel() noexcept {
     const auto& surface = *std::get_if<pose::SurfaceSkeleton>(&skeleton_);
     const auto up_m = [this](std::size_t row) { return static_cast<double>(body_.along[row]) * height_m_; };
     const auto high_m = [&](std::size_t row) { return up_m(row) - static_cast<double>(drop_m_[row]); };
-    std::size_t part = 0;  // of the axis: the last whose end is not higher
+    std::size_t part = 0;  // of the axis: the last part whose end is not higher
     for (std::size_t row = 0; row < surface.rows; ++row) {
       while (part + 2 < surface.rows && high_m(part + 1) <= up_m(row)) ++part;
       const double link_m = std::max(high_m(part + 1) - high_m(part), 1e-6);
@@ -372,7 +372,7 @@ class Flame final : public Scene {
   double puffing_;
   double exposure_;
   double puff_hz_;
-  double across_;  ///< of a tile's metres in one across the flame
+  double across_;  ///< metres of a tile per metre across the flame
 
   Wind wind_;
   math::CriticallyDamped kindled_;  ///< 0 unlit, 1 burning
@@ -380,13 +380,13 @@ class Flame final : public Scene {
   LayeredNoise noise_;
   noise::Tile2 pace_;
   noise::LineCut pace_at_;
-  double puffed_ = 0.0;                          ///< puffs, their whole number left out
-  double puff_ = 0.0;                            ///< what one lowers the threshold by at most
+  double puffed_ = 0.0;                          ///< puffs, without their whole number
+  double puff_ = 0.0;                            ///< the maximum reduction of the threshold by one
   std::vector<float> values_, along_;            ///< a point each
-  std::vector<float> bent_m_, drop_m_, unseen_;  ///< of the panel's flame, a row each
+  std::vector<float> bent_m_, drop_m_, unseen_;  ///< of the panel's flame, one per row
   pose::Skeleton skeleton_;
   pose::Pose pose_;
-  FlameBody body_;  ///< but for its surface, which is in skeleton_
+  FlameBody body_;  ///< without its surface, which is in skeleton_
 };
 
 }  // namespace

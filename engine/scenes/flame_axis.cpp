@@ -19,7 +19,7 @@ constexpr double kFlameGravity_m_s2 = 9.81;
 constexpr double kBurnt_kg_m2_s = 0.02;
 constexpr double kAir_kg_m3 = 1.2;
 
-/// Where the wind is known, and the roughness of open land.
+/// The height at which the wind is known, and the roughness of open land.
 constexpr double kWindHeight_m = 10.0;
 constexpr double kRoughness_m = 0.03;
 constexpr double kMinWindHeight_m = 0.1;
@@ -30,15 +30,15 @@ constexpr double kSwayDamping = 0.7;
 /// How soon the axis bends over the foot.
 constexpr double kBendsOver = 25.0;
 
-/// What is left of a lean that has died away: it moves nothing, and is not worth a denormal number.
+/// A smaller lean is set to 0: it moves nothing, and would become a denormal number.
 constexpr double kUpright = 1e-12;
 
-/// The swaying of its own has waves of 0.4 to 1.6 s, on a tile that is crossed in so many seconds.
+/// Its own sway has waves of 0.4 to 1.6 s, on a tile that is crossed in this time.
 constexpr std::size_t kWobbleSamples = 128;
 constexpr double kWobblePeriod_s = 12.8;
 constexpr double kWobbleFrom = 8.0;  ///< waves a tile
 constexpr double kWobbleTo = 32.0;
-constexpr noise::TorusPhase kSouthOfEast{0x5a000000U, 0x93000000U};  ///< where the second component is read
+constexpr noise::TorusPhase kSouthOfEast{0x5a000000U, 0x93000000U};  ///< of the second component
 
 noise::Tile2 wobble_tile(std::uint64_t seed) {
   noise::Tile2 tile = noise::make_noise_2d({.size = kWobbleSamples,
@@ -57,7 +57,7 @@ double largest_of(const noise::Tile2& tile) {
   return static_cast<double>(largest);
 }
 
-/// x^-0.21, as x^-(27/128): the exponent's scatter is larger.
+/// x^-0.21, as x^-(27/128): the measured exponent is less certain than the difference.
 double power_of_length(double x) noexcept {
   const double eighth = std::sqrt(std::sqrt(std::sqrt(x)));
   const double sixteenth = std::sqrt(eighth);
@@ -85,7 +85,7 @@ FlameAxis::FlameAxis(const FlameAxisSpec& spec)
       wobble_steepest_per_s_(steepest_slope(wobble_, kWobblePeriod_s)),
       wobble_largest_(largest_of(wobble_)),
       history_(kChannels, spec.height_m / spec.rise_m_s) {
-  // Rounded to floats, so that the last bit of a library's logarithm decides about nothing.
+  // Rounded to floats, so that the last bit of a library's logarithm changes nothing.
   const double felt_m = std::max(spec.felt_at_m, kMinWindHeight_m);
   const double felt = std::log(felt_m / kRoughness_m) / std::log(kWindHeight_m / kRoughness_m);
   const double own_m_s = math::cube_root(kFlameGravity_m_s2 * kBurnt_kg_m2_s * spec.foot_m / kAir_kg_m3);
@@ -137,7 +137,7 @@ void FlameAxis::write(const Rows& rows) const noexcept {
       const operators::LinkEnd<float> end = operators::link_end(lean_east, lean_south, 2.0F * long_m);
       at_east_m += end.east;
       at_south_m += end.south;
-      at_drop_m += link_m - (end.down - long_m);  // it goes up by as much as a hanging one would go down
+      at_drop_m += link_m - (end.down - long_m);  // it goes up by the amount that a hanging one would go down
     }
     rows.east_m[row] = at_east_m;
     rows.south_m[row] = at_south_m;
@@ -148,8 +148,8 @@ void FlameAxis::write(const Rows& rows) const noexcept {
 }
 
 /// In a tick the lean, which follows a target within the strongest wind's, moves by that times the oscillator's largest
-/// rate, and the wobble by its steepest slope in each of two components. What is read of the history moves no faster
-/// than what was written.
+/// rate, and the wobble by its steepest slope in each of two components. Values read from the history change no faster
+/// than those written.
 double FlameAxis::largest_slope_step(double dt_s) const noexcept {
   const double rate = std::min(operators::OscillatorStep::largest_rate_per_s(kSway_hz, kSwayDamping) * dt_s,
                                2.0 * operators::OscillatorStep::largest_gain(kSwayDamping));
@@ -163,8 +163,8 @@ double FlameAxis::largest_slope() const noexcept {
 }
 
 /// A row stands on the sum of its links, whose lengths add up to less than height (1 + overshoot). A link of length l
-/// that leans by d more and grows by g is elsewhere by at most l 2 d + g (lean.hpp). The length follows as the lean
-/// does.
+/// that leans by d more and grows by g moves by at most l 2 d + g (lean.hpp). The length follows in the same way as the
+/// lean.
 double FlameAxis::largest_step_m(double dt_s) const noexcept {
   const double gain = operators::OscillatorStep::largest_gain(kSwayDamping);
   const double rate =

@@ -19,10 +19,10 @@ namespace yuragi::scenes {
 /// Program, report IS 3-1; Thomas 1963, The size of flames from natural fires, has 0.7 u*^-0.49), and 1 in calm air.
 /// Its length is max(u*, 1)^-0.21 of that in calm air (Thomas 1963).
 struct FlameInWind {
-  double lean = 0.0;  ///< tangent of half the tilt, as lean.hpp has it: below 1
-  double part = 1.0;  ///< of the length in calm air, above 0
+  double lean = 0.0;  ///< tangent of half the tilt, as in lean.hpp: below 1
+  double part = 1.0;  ///< relative to the length in calm air, above 0
 
-  /// u* of at least 0. By square roots alone, which are the same everywhere. Thread-safe and realtime-safe: yes.
+  /// u* of at least 0. Only by square roots, which are the same on every machine. Thread-safe and realtime-safe: yes.
   static FlameInWind at(double relative_wind) noexcept;
 };
 
@@ -32,14 +32,14 @@ struct FlameAxisSpec {
   double height_m = 1.2;        ///< of the axis, in calm air
   double felt_at_m = 0.6;       ///< how high over the ground it feels the wind
   double foot_m = 0.5;          ///< its width
-  double rise_m_s = 2.5;        ///< of its gas: how soon a row does what the foot did
-  double wobble = 0.1;          ///< standard deviation of its own swaying, a lean
+  double rise_m_s = 2.5;        ///< of its gas: the delay of a row after the foot
+  double wobble = 0.1;          ///< standard deviation of its own sway, a lean
   double strongest_m_s = 60.0;  ///< the wind is never stronger
   std::uint64_t seed = 0;
 };
 
 /// The axis of a flame, bent by the wind and by its own swaying: rows are added up from the foot, each as it is turned,
-/// and a row does what the foot did when its gas was there (the projection operator "propagation", Chiba, section 2-2
+/// and a row moves as the foot did when its gas was there (the projection operator "propagation", Chiba, section 2-2
 /// (3)).
 ///
 /// The foot follows FlameInWind as an oscillator of 1 Hz, damping 0.7. The foot itself does not move, and the turn
@@ -53,20 +53,20 @@ class FlameAxis {
   /// Advances by dt_s (above 0) in this wind (m/s, toward east and south).
   void step(double east_m_s, double south_m_s, double dt_s) noexcept;
 
-  /// How each row is moved, as SurfacePose has it; `rows` elements each.
+  /// The movement of each row, as in SurfacePose; `rows` elements each.
   struct Rows {
     std::span<float> east_m, south_m, drop_m;
     std::span<float> slope_east, slope_south;
   };
   void write(const Rows& rows) const noexcept;
 
-  /// No row moves farther than this in a tick, whatever the wind does; and its slope changes by no more than that.
+  /// The maximum movement of a row in a tick, in any wind; also the maximum change of its slope.
   double largest_step_m(double dt_s) const noexcept;
   double largest_slope_step(double dt_s) const noexcept;
   double largest_slope() const noexcept;
 
  private:
-  /// What the history holds: leans, and which part of the length is missing.
+  /// The channels of the history: leans, and the missing part of the length.
   enum Channel : std::size_t { kLeanEast, kLeanSouth, kMissing, kWobbleEast, kWobbleSouth, kChannels };
   struct Oscillator {
     double value = 0.0, rate = 0.0;
@@ -74,8 +74,7 @@ class FlameAxis {
   };
 
   FlameAxisSpec spec_;
-  /// u* in a wind of 1 m/s at 10 m over open land: the flame feels what is left of it farther down, by the logarithmic
-  /// profile.
+  /// u* in a wind of 1 m/s at 10 m over open land: the flame gets the wind at its height, by the logarithmic profile.
   double relative_wind_s_m_ = 0.0;
   FlameInWind strongest_;
   noise::Tile2 wobble_;
@@ -83,7 +82,7 @@ class FlameAxis {
   noise::LineCut wobbled_;
   Oscillator lean_east_, lean_south_, missing_;
   operators::PropagationHistory history_;
-  std::vector<float> turned_;  ///< of each row: how much of the lean it has
+  std::vector<float> turned_;  ///< for each row: its share of the lean
 };
 
 }  // namespace yuragi::scenes

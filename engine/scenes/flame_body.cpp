@@ -12,20 +12,20 @@
 namespace yuragi::scenes {
 namespace {
 
-/// A panel is higher than its flame, whose last tongues go out above it, and wide enough for one that leans: the most
-/// that FlameInWind lets it reach to a side is two thirds of its height.
+/// A panel is higher than its flame, whose last tongues go out above it, and wide enough for one that leans:
+/// FlameInWind reaches at most two thirds of its height to a side.
 constexpr double kPanelHeight = 1.35;
 constexpr double kPanelReach = 0.7;
 
-/// A body is this much of sqrt(v) (1 - v) of its half width thick, v from foot to top: thickest, as thick as its width,
-/// at a third.
+/// A body has the thickness sqrt(v) (1 - v) times this times its half width, v from foot to top: thickest, as thick as
+/// its width, at a third.
 constexpr double kThickest = 1.5 * 1.7320508075688772;
 
-/// The noise moves the foot by so much of what it moves the rest, from this part of the height on.
+/// The noise moves the foot by this part of the usual movement, which is reached at this part of the height.
 constexpr double kSteadyFoot = 0.25;
 constexpr double kFreeAt = 0.5;
 
-/// A color of the ramp: where it stands, and red, green, blue and alpha (sRGB, straight alpha).
+/// A color of the ramp: its position, and red, green, blue and alpha (sRGB, straight alpha).
 struct RampColor {
   double at;
   std::array<double, 4> rgba;
@@ -91,7 +91,7 @@ void add_body_row(const FlameBodySpec& spec, double up_m, FlameBody& body) {
     const double radius_m = half_m * kThickest * std::sqrt(v) * (1.0 - v);
     const double moved_m = radius_m * std::min(kSteadyFoot + v * (1.0 - kSteadyFoot) / kFreeAt, 1.0);
 
-    // The normal stands across the outline, whose radius grows by d radius / d up; at the foot it points down.
+    // The normal is perpendicular to the outline, whose radius grows by d radius / d up; at the foot it points down.
     const double growth = kThickest * half_m * (0.5 / root - 1.5 * root) / spec.height_m;
     const double length = std::sqrt(1.0 + growth * growth);
     for (std::size_t column = 0; column < around; ++column) {

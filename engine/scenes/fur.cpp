@@ -23,12 +23,12 @@
 // Fur in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine for
 // fluctuation phenomena" (Iwate University), section 3.1: a coat on a curved body.
 //
-//   shift    the wind carries a small noise through the coat, more slowly than it blows: strokes        CarriedNoise
+//   shift the wind carries a small noise through the coat, more slowly than it blows: strokes        CarriedNoise
 //   sample   each hair reads it where it grows, twice, far apart: along the wind and across it          CarriedNoise
 //   project  the wind along the skin lays the hair over, and the strokes open partings               CoatBendingJob
 //            and it overshoots and sways on, a damped oscillator                                      OscillatorJob
 //
-// The gusts of the wind outside are longer than a body: all hairs have the wind of the scene's place.
+// The gusts of the wind are longer than a body: all hairs have the wind at the scene's place.
 
 namespace yuragi::scenes {
 namespace {
@@ -39,10 +39,10 @@ constexpr std::array kStrokeWaves_m = {0.24, 0.52};
 constexpr double kMaxStroke = 2.2;
 constexpr double kStrokeAcross = 0.5;
 
-/// Where the coat reads its strokes for the second time: so far away that it is an independent noise.
+/// The offset of the second reading of the strokes: so large that it is an independent noise.
 constexpr float kElsewhere_m = 1618.034F;
 
-/// How much less the wind bends hairs on the side that faces away from it.
+/// The reduction of the wind's effect on hairs on the side that faces away from it.
 constexpr double kSheltered = 0.6;
 
 const Fields<CoatSpec> kCoatFields = {
@@ -120,7 +120,7 @@ class Fur final : public Scene {
 
   void shift(const wind::ground::Wind& wind, double dt_s) noexcept override {
     wind_.step(wind, dt_s);
-    // Strokes run over the coat as it lies unrolled: along the body, and around it.
+    // Strokes move over the coat as it is unrolled: along the body, and around it.
     const double speed_m_s = wind_.speed_m_s();
     const double carry = speed_m_s > 0.0 ? std::min(sway_.carry, sway_.fastest_stroke_m_s / speed_m_s) : 0.0;
     const double east_m_s = carry * wind_.east_m_s();
@@ -175,8 +175,8 @@ class Fur final : public Scene {
   /// With s the wind along the skin in half-bend speeds, the bend is s^2/(1+s^2) (max e + strokes) downwind. The slope
   /// of s^2/(1+s^2) in its direction over s, as a vector, is at most 3 sqrt(3)/8; the exposure e changes by at most
   /// `sheltered` times the turn of the wind, |du|/|u|, which s^2/(1+s^2) holds to half of `sheltered` over s; and
-  /// strokes change by what their noise does. A projection onto the skin changes by no more than what it is of. Never
-  /// more than from one extreme to the other; an oscillator and the joints as in StrandSway.
+  /// strokes change by the change of their noise. A projection onto the skin changes by no more than the original. At
+  /// most the whole range; an oscillator and the joints as in StrandSway.
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_stroke = math::length(1.0, kStrokeAcross) * kMaxStroke;
     const double largest_bend_rad = sway_.max_bend_rad + sway_.stroke_rad * largest_stroke;

@@ -16,8 +16,8 @@
 namespace yuragi::scenes {
 namespace {
 
-/// 256 m in 512 samples are cells of 0.5 m: what is read stays below half the tick rate up to 30 m/s at 60 Hz
-/// (|k| U < pi rate), so that in a storm no blade jitters from tick to tick.
+/// 256 m in 512 samples are cells of 0.5 m: frequencies stay below half the tick rate up to 30 m/s at 60 Hz (|k| U < pi
+/// rate), so that in a storm no blade jitters from tick to tick.
 constexpr StrandSwaySpec kGrassSway = {};
 
 const Fields<MeadowSpec> kMeadowFields = {

@@ -9,13 +9,13 @@
 #include "engine/scenes/scene.hpp"
 #include "engine/scenes/strand_sway.hpp"
 
-// The ground around all scenes: how grass is bent on a coarse grid, by the same wind and in the same way as the blades
-// of the grass scene (StrandSway). A viewer grows grass to the horizon, bent as the nodes around each blade.
+// The ground around all scenes: the bend of grass on a coarse grid, by the same wind and in the same way as the blades
+// of the grass scene (StrandSway). A viewer draws grass to the horizon, bent by interpolation between the nodes.
 
 namespace yuragi::scenes {
 namespace {
 
-/// Enough for a viewer that shows nodes as blades.
+/// Enough for a viewer that draws nodes as blades.
 constexpr std::size_t kNodeLinks = 4;
 
 /// Waves of the canopy that nodes 2 m apart can hold.

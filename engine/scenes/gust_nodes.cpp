@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMinCoarseNodes = 4;
 constexpr double kMaxCoarseCell_m = 16.0;
 
-/// So many nodes that they are near enough to each other, and no more than there are fine ones.
+/// The number of coarse nodes for this maximum spacing, at most that of the fine ones.
 std::size_t coarse_nodes(std::size_t nodes, double cell_m) {
   if (nodes == 0) return 0;
   const double extent_m = static_cast<double>(nodes - 1) * cell_m;
@@ -103,7 +103,7 @@ void GustNodes::read_carried(const wind::turbulence::GustNoise::Moment& moment, 
   read(later, weights, lines);
 }
 
-/// At the nodes, and apart from them at the coarse nodes.
+/// Reads at the nodes, and separately at the coarse nodes.
 void GustNodes::read_tiles(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights,
                            const NodeRange& lines) noexcept {
   std::array<wind::turbulence::GustNoise::Layer, wind::turbulence::GustNoise::kMaxLayers> octaves;
@@ -122,7 +122,7 @@ void GustNodes::read_tiles(const wind::turbulence::GustNoise::Moment& moment, co
     const Nodes& nodes = is_slow ? coarse_ : fine_;
     const NodeRange& range = is_slow ? coarse_range : fine_range;
     const std::size_t torus = wind::turbulence::GustNoise::torus_of(layer.octave);
-    // Not in one expression: gcc 12 leaves arguments unset where a conditional is assigned a list.
+    // Not in one expression: gcc 12 leaves arguments unset if a list is assigned to a conditional.
     operators::VectorLayer& sampled = is_slow ? coarse[coarse_count++] : fine[fine_count++];
     sampled = {.tile = layer.tile,
                .quarter = layer.quarter,
@@ -152,7 +152,7 @@ void GustNodes::read_tiles(const wind::turbulence::GustNoise::Moment& moment, co
   add_up(std::span(coarse).first(coarse_count), coarse_, coarse_range);
 }
 
-/// Adds what the coarse nodes have to what the nodes have, and gives it the strength of the place.
+/// Adds the coarse nodes' values to the nodes', and multiplies them by the strength at the place.
 void GustNodes::add_coarse(const NodeRange& lines) noexcept {
   const std::size_t coarse_columns = line_envelope_.size();
   for (std::size_t line = lines.first; line < lines.first + lines.count; ++line) {

@@ -12,7 +12,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// One coordinate of places on a turned tile: from_x x + from_z z, as phases. Either may be left out with its factor 0.
+/// One coordinate of places on a turned tile: from_x x + from_z z, as phases. Either can be omitted if its factor is 0.
 std::vector<std::uint32_t> phases_on(std::span<const float> x_m, double from_x, std::span<const float> z_m,
                                      double from_z, double period_m) {
   std::vector<std::uint32_t> phases;
@@ -36,7 +36,7 @@ LayeredNoise::LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<con
                            std::span<const float> z_m, std::size_t columns)
     : is_grid_(layers.size() <= operators::GridSampleJob::kMaxLayers &&
                std::all_of(layers.begin(), layers.end(), is_plain) && goes_along_axes(x_m, z_m, columns)) {
-  // Of a grid the first row has every x, and the first column every z.
+  // In a grid the first row has every x, and the first column every z.
   std::vector<float> column_z_m;
   if (is_grid_) {
     for (std::size_t i = 0; i < z_m.size(); i += columns) column_z_m.push_back(z_m[i]);
@@ -60,7 +60,7 @@ LayeredNoise::LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<con
          .turn_cos = spec.turn_cos,
          .turn_sin = spec.turn_sin});
 
-    // A tile that is read bilinearly is nowhere steeper than between neighbours.
+    // A tile that is interpolated bilinearly has its steepest slope between neighbours.
     Layer& layer = layers_.back();
     const noise::Tile2& tile = layer.tile;
     float steepest_x = 0.0F;

@@ -19,15 +19,15 @@ struct NoiseLayerSpec {
   double period_z_m = 1.0;  ///< along z: a tile may be stretched
   float weight = 1.0F;      ///< above 0: its standard deviation in the sum, at most (set_weight)
   std::size_t band = 0;     ///< the level of BandLimitedTile2 that is read: how many octaves of the finest are left out
-  /// The tile lies turned by an angle of this cosine and sine, so that a noise that goes along x or z crosses it at a
-  /// slant, and does not come back to where it was after a period.
+  /// Cosine and sine of the tile's turn: a noise that moves along x or z then crosses it at a slant, and does not
+  /// repeat after a period.
   double turn_cos = 1.0;
   double turn_sin = 0.0;
-  std::span<const float> x_m = {};  ///< the places' x for this layer; none: that of all layers
+  std::span<const float> x_m = {};  ///< the places' x for this layer; empty: that of all layers
 };
 
-/// Several noises over the same places, each of which goes its own way: their sum changes as it goes, where a single
-/// one would pass by as a picture. (A CarriedNoise goes one way, with the wind.) Mean 0, variance the sum of the
+/// Several noises over the same places, each of which moves separately: their sum changes as it moves, while a single
+/// one would pass as a fixed picture. (A CarriedNoise moves in one way, with the wind.) Mean 0, variance the sum of the
 /// squared weights.
 ///
 /// Allocates when it is made, never afterwards; throws the errors of make_noise_2d, and std::bad_alloc. Thread-safe:
@@ -35,32 +35,32 @@ struct NoiseLayerSpec {
 class LayeredNoise {
  public:
   /// Layers: 1 to SampleJob::kMaxLayers. Places: coordinates in metres, as many of x as of z.
-  /// Where they are the rows of a grid, `columns` is how many stand in a row: if rows go along x, as in a scene that
-  /// is not turned, they are read faster, by GridSampleJob, to the same bits. Such a grid has one to
-  /// GridSampleJob::kMaxLayers layers, none of which is turned or has an x of its own, and does not lean.
+  /// If they are the rows of a grid, `columns` is the number in a row: if rows go along x, as in a scene that is not
+  /// turned, they are read faster, by GridSampleJob, to the same bits. Such a grid has one to GridSampleJob::kMaxLayers
+  /// layers, none of which is turned or has an x of its own, and does not lean.
   LayeredNoise(std::span<const NoiseLayerSpec> layers, std::span<const float> x_m, std::span<const float> z_m,
                std::size_t columns = 0);
 
-  /// Shifting operator: a layer goes on by so much.
+  /// Shifting operator: moves a layer by this distance.
   void shift(std::size_t layer, double x_m, double z_m) noexcept;
 
-  /// Moves the places from `first` on, `count` of them, to x_m east of where they were made.
+  /// Moves `count` places from `first` on to x_m east of their original positions.
   void lean(std::size_t first, std::size_t count, double x_m) noexcept;
 
-  /// From now on the layer has this standard deviation in the sum: 0 to the one that it was made with.
+  /// Sets the layer's standard deviation in the sum: 0 up to its initial one.
   void set_weight(std::size_t layer, float weight) noexcept { layers_[layer].weight = weight; }
 
-  /// The steepness of a layer as it is read, for a weight of 1: the root mean square of its slope, a metre.
+  /// The root mean square of a layer's slope as it is read, for a weight of 1, per metre.
   double slope_rms_per_m(std::size_t layer) const noexcept { return layers_[layer].slope_rms_per_m; }
 
-  /// Sampling operator: the sum of the layers at each place, as many as `out` has.
+  /// Sampling operator: the sum of the layers at each place; `out` sets the number.
   void sample(SimdRow row, std::span<float> out) const noexcept;
 
-  /// No more than this does a layer, of its largest weight, change at a place when it is moved by so much against the
+  /// The maximum change of a layer, of its largest weight, at a place when it is moved by this distance relative to the
   /// place.
   double largest_change(std::size_t layer, double x_m, double z_m) const noexcept;
 
-  /// Between these the sum is, whatever the weights.
+  /// Bounds of the sum, for all weights.
   double lowest() const noexcept { return lowest_; }
   double highest() const noexcept { return highest_; }
 
@@ -71,7 +71,7 @@ class LayeredNoise {
     double period_z_m;
     float weight;
     noise::TorusOffset offset;
-    std::vector<std::uint32_t> first_place_x, first_place_z;  ///< where the places were made
+    std::vector<std::uint32_t> first_place_x, first_place_z;  ///< original positions
     std::vector<std::uint32_t> place_x, place_z;              ///< one a place; of a grid one a column, and one a row
     double turn_cos, turn_sin;
     double steepest_x_per_m = 0.0, steepest_z_per_m = 0.0;  ///< of the largest weight

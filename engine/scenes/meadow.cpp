@@ -13,7 +13,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// Small, as the paper has it for grass: close to white, with a hint of patches.
+/// Small, as in the paper for grass: close to white, with a hint of patches.
 constexpr double kLayoutBeta = 0.7;
 
 /// One property of all blades: a noise of mean 0 and variance 1, a sample a blade.
@@ -26,7 +26,7 @@ noise::Tile2 layout_noise(const MeadowSpec& spec, std::string_view property) {
       .value();
 }
 
-/// `mean` with relative fluctuations of standard deviation `variation`, kept between `low` and `high` times the mean.
+/// `mean` with relative fluctuations of standard deviation `variation`, limited to `low` and `high` times the mean.
 float varied(double mean, double variation, float noise, double low, double high) {
   return static_cast<float>(mean * std::clamp(1.0 + variation * static_cast<double>(noise), low, high));
 }
@@ -51,7 +51,7 @@ Meadow make_meadow(const MeadowSpec& spec) {
     const std::size_t deep = strand / spec.blades_across;
     pose::StrandSkeleton& skeleton = meadow.skeleton;
 
-    // Place: a grid, from which each blade strays by up to one and a half cells.
+    // Place: a grid, with a random displacement of each blade by up to one and a half cells.
     const double stray_x = std::clamp(0.45 * static_cast<double>(x_noise.at(across, deep)), -1.5, 1.5);
     const double stray_z = std::clamp(0.45 * static_cast<double>(z_noise.at(across, deep)), -1.5, 1.5);
     skeleton.root_x_m[strand] =

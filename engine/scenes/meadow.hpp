@@ -15,11 +15,11 @@ struct MeadowSpec {
   std::size_t links = 10;             ///< a blade
   double width_m = 7.0;               ///< along x
   double depth_m = 7.0;               ///< along z
-  double length_m = 0.7;              ///< of a blade, on average
+  double length_m = 0.7;              ///< mean length of a blade
   double length_variation = 0.25;     ///< standard deviation, as a part of length_m
-  double tilt_deg = 8.0;              ///< of a blade's foot from upright, on average
-  double curl_deg = 35.0;             ///< from foot to tip, on average
-  double heading_deg = 0.0;           ///< where blades droop to on average, clockwise from north
+  double tilt_deg = 8.0;              ///< mean angle of a blade's foot from upright
+  double curl_deg = 35.0;             ///< from foot to tip, mean
+  double heading_deg = 0.0;           ///< mean direction in which blades droop, clockwise from north
   double heading_spread_deg = 150.0;  ///< standard deviation around it
   std::uint64_t seed = 0;
 };

@@ -14,7 +14,7 @@ namespace yuragi::scenes {
 /// A grid has as many parts as ticks fit between two readings of a part: 5 at 60 ticks a second. Part p of n is read at
 /// the ticks whose number leaves p when divided by n, so that the schedule depends on the tick's number alone, not on
 /// when the grid was made; the parts of skipped ticks are read at the next one. A part is read as it will be `lead_s`
-/// later, and its values go there in a straight line (WindGrid).
+/// later, and its values move there linearly (WindGrid).
 ///
 /// Pure. Thread-safe: no. Realtime-safe: yes.
 class ReadingSchedule {
@@ -30,13 +30,13 @@ class ReadingSchedule {
     double lead_s = 0.0;  ///< 0: the values are needed at this tick
   };
 
-  /// Goes on to a tick that is dt_s (above 0) after the last one. Without a number: all parts are read at once.
+  /// Advances to a tick that is dt_s (above 0) after the last one. Without a number all parts are read at once.
   Due advance(std::optional<std::uint64_t> tick, double dt_s) noexcept {
     const std::optional<std::uint64_t> last = last_;
     last_ = tick;
     if (!tick) return {};
     const std::uint64_t passed = last && *last < *tick ? *tick - *last : 1;
-    // A step after a long halt is shorter than its ticks: it does not tell how far these are apart.
+    // A step after a long pause is limited, and does not show the interval of ticks.
     if (passed == 1) period_s_ = dt_s;
     const std::size_t parts = parts_at(period_s_);
     if (parts == 1) return {};
@@ -46,12 +46,12 @@ class ReadingSchedule {
     return {.parts = parts, .first = first, .count = count, .lead_s = static_cast<double>(parts) * period_s_};
   }
 
-  /// The rate of a critically damped filter (math::CriticallyDamped) that follows values read by this schedule and lets
-  /// through what one of rate `omega_rad_s` lets through of values that are read at each tick.
+  /// The rate of a critically damped filter (math::CriticallyDamped) that follows values read by this schedule with the
+  /// same response as one of rate `omega_rad_s` for values that are read at each tick.
   ///
   /// A filter's impulse response has the variance 2 / omega^2. Straight lines between values that are n ticks of p
-  /// seconds apart smooth by a triangle of 2 n - 1 ticks, whose variance is (n^2 - 1) p^2 / 6; variances add up. To
-  /// 2 Hz the magnitudes agree within 0.21 dB.
+  /// seconds apart smooth by a triangle of 2 n - 1 ticks, whose variance is (n^2 - 1) p^2 / 6; variances add up. To 2
+  /// Hz the magnitudes agree within 0.21 dB.
   static double matched_rate_rad_s(double omega_rad_s, const Due& due) noexcept {
     const auto parts = static_cast<double>(due.parts);
     const double period_s = due.lead_s / parts;

@@ -40,12 +40,11 @@ namespace {
 constexpr std::size_t kWaveSamples = 512;
 constexpr double kWavesPerTile = 16.0;  ///< so a wave has 32 samples
 
-/// No wave is longer than this times the strongest: it would go faster than the field that carries it.
+/// Maximum length of a wave, relative to the strongest: a longer one would go faster than its field.
 constexpr double kLongest = 1.5;
 
-/// Two octaves of the finest are left out: what is shorter than a sixth of a wave. It would be too fine for the grid,
-/// and would show the samples; what is left goes slowly enough for the ticks (|k| U < pi rate from wave_length 0.1 m
-/// on).
+/// The two finest octaves are omitted, which are shorter than a sixth of a wave. They would be too fine for the grid,
+/// and would show the samples; the rest is slow enough for the ticks (|k| U < pi rate from wave_length 0.1 m on).
 constexpr std::size_t kWaveBand = 2;
 
 constexpr double kGravity_m_s2 = 9.81;
@@ -54,23 +53,23 @@ constexpr double kTension_m3_s2 = 7.3e-5;  ///< of clean water, over its density
 /// The second field of waves is shorter than the first.
 constexpr double kShorter = 1.0 / std::numbers::phi;
 
-/// Where the two fields go, 25 degrees to either side of the wind: cosine and sine.
+/// The directions of the two fields, 25 degrees to either side of the wind: cosine and sine.
 constexpr double kCrossingCos = 0x1.d0079302dd767p-1;
 constexpr double kCrossingSin = 0x1.b0c2d77379853p-2;
 
-/// Below this wind (m/s) waves slow down, so that there is no direction to be known in calm air.
+/// Below this wind (m/s) waves slow down, so that calm air needs no direction.
 constexpr double kSlow_m_s = 0.5;
 
-/// Where the water feels the wind: so far apart, or farther.
+/// Minimum spacing of the nodes at which the water gets the wind.
 constexpr double kFinestCell_m = 0.5;
 
-/// The long field's part of the height's variance, in a wind of so much.
+/// The long field's part of the height's variance, at this wind.
 constexpr double kShortWind_m_s = 1.0;
 constexpr double kLongWind_m_s = 8.0;
 constexpr double kMinLong = 0.2;
 constexpr double kMaxLong = 0.8;
 
-/// Gusts of the water's own, where the wind brings none: their standard deviation, as a part of the wind.
+/// The water's own gusts, for a wind without gusts: their standard deviation, relative to the wind.
 constexpr double kOwnGusts = 0.2;
 
 /// kRippleFields defines each.
@@ -150,7 +149,7 @@ RoughWaterSpec roughness_of(const RippleSettings& settings) {
           .onset_m_s = settings.onset_m_s};
 }
 
-/// The speed of waves on deep water, which gravity and the surface's tension drive.
+/// The speed of waves on deep water, by gravity and surface tension.
 double wave_speed(double length_m) {
   const double per_rad_m = length_m / (2.0 * std::numbers::pi);
   return std::sqrt(kGravity_m_s2 * per_rad_m + kTension_m3_s2 / per_rad_m);
@@ -160,9 +159,9 @@ double square_of(double value) {
   return value * value;
 }
 
-/// The two fields. Beyond the strongest wave, of length wave_length, their spectrum falls as 1/f^beta, and before it
-/// there is little: in two dimensions von Karman's spectrum of scale L has most power in the ring of wavelength
-/// 2 pi sqrt(beta) 1.339 L.
+/// The two fields. Waves shorter than the strongest one, of length wave_length, fall as 1/f^beta, and longer ones are
+/// weak: in two dimensions von Karman's spectrum of scale L has most power in the ring of wavelength 2 pi sqrt(beta)
+/// 1.339 L.
 std::array<NoiseLayerSpec, 2> wave_layers(const RippleSettings& settings, std::uint64_t seed) {
   const double beta = settings.beta;
   const double period_m = kWavesPerTile * settings.wave_length_m;
@@ -192,7 +191,7 @@ class Ripple final : public Scene {
     const double east_m_s = wind_.east_m_s();
     const double south_m_s = wind_.south_m_s();
 
-    // Waves go at their own speed, the two fields to either side of the wind.
+    // Waves move at their own speed, the two fields to either side of the wind.
     const double square = east_m_s * east_m_s + south_m_s * south_m_s;
     const double speed_per_wind = 1.0 / std::sqrt(square + kSlow_m_s * kSlow_m_s);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -236,9 +235,9 @@ class Ripple final : public Scene {
 
   /// A point is moved by slope noise / k, where the noise is the sum of w_i n_i, w_i^2 being the parts p and 1 - p of
   /// its variance, and k^2 = p k_1^2 + (1 - p) k_2^2: at least k_1^2, of the long field. In a tick the slope changes as
-  /// RoughWater has it; the waves by what goes past at their own speed; p by d = 0.6 w dt / e, and with it each w_i by
-  /// at most d / (2 sqrt(0.2)), and 1 / k by at most d (k_2^2 - k_1^2) / (2 k_1^3). Each times the others at their
-  /// largest.
+  /// in RoughWater; the waves by their movement at their own speed; p by d = 0.6 w dt / e, and with it each w_i by at
+  /// most d / (2 sqrt(0.2)), and 1 / k by at most d (k_2^2 - k_1^2) / (2 k_1^3). Each is multiplied by the maximum of
+  /// the others.
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_wave = std::max(waves_.highest(), -waves_.lowest());
     const double followed = std::min(RoughWater::kBuildUp_rad_s * dt_s / std::numbers::e, 1.0);
@@ -280,7 +279,7 @@ class Ripple final : public Scene {
     }
   }
 
-  /// The wind over each node: the mean, and `gustiness` of what the wind there has besides.
+  /// The wind over each node: the mean, and `gustiness` times the rest of the wind there.
   void feel_gusts_outside() noexcept {
     outside_->sample(0, node_east_m_s_, node_south_m_s_);
     const auto part = static_cast<float>(gustiness_);
@@ -298,13 +297,13 @@ class Ripple final : public Scene {
   std::array<double, 2> wave_speed_m_s_;
 
   Wind wind_;
-  math::CriticallyDamped long_part_;  ///< 0: as in a light wind, to 1
+  math::CriticallyDamped long_part_;  ///< from 0, as in a light wind, to 1
   LayeredNoise waves_;                ///< the long field and the short one
   CarriedNoise gusts_;                ///< of its own
   CarriedPlaces gust_places_;
-  std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, where there is one
+  std::optional<WindGrid> outside_;  ///< and the wind outside over the nodes, if there is one
   RoughWater rough_;
-  std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< a node of rough_ each
+  std::vector<float> node_wind_m_s_, node_east_m_s_, node_south_m_s_;  ///< one per node of rough_
   double height_per_slope_m_ = 0.0;
   std::vector<float> noise_, slope_;  ///< a point each
   pose::Skeleton skeleton_;

@@ -15,7 +15,7 @@ constexpr double kStillSlopes = 0.003;
 constexpr double kSlopesPerWind_s_m = 0.00512;
 constexpr std::size_t kMaxWaterCells = 62;  ///< a side: with one more node, and one to read beyond, 64
 
-/// What is left of a slope that has died away: it moves nothing, and is not worth a denormal number.
+/// A smaller slope is set to 0: it moves nothing, and would become a denormal number.
 constexpr float kFlatSlope = 1e-12F;
 
 std::size_t cells_over(double extent_m, double finest_cell_m) {
@@ -23,7 +23,7 @@ std::size_t cells_over(double extent_m, double finest_cell_m) {
   return std::clamp(static_cast<std::size_t>(cells), std::size_t{1}, kMaxWaterCells);
 }
 
-/// Where `points` are, evenly from the first node to the last, on a torus of `size` nodes.
+/// The positions of `points`, evenly from the first node to the last, on a torus of `size` nodes.
 std::vector<std::uint32_t> phases_between(std::size_t points, std::size_t nodes, std::size_t size) {
   std::vector<std::uint32_t> phases;
   for (std::size_t i = 0; i < points; ++i) {

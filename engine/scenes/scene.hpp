@@ -13,8 +13,8 @@
 
 namespace yuragi::scenes {
 
-/// The strongest wind that a scene is moved by; what is stronger is taken as this. (The strongest gust of a typhoon
-/// over a town is about 70 m/s, and everything here is long saturated.)
+/// The limit of the wind that moves scenes. (The strongest gust of a typhoon over a town is about 70 m/s, and all
+/// scenes are saturated long before.)
 inline constexpr double kStrongestSceneWind_m_s = 60.0;
 
 /// Something that the wind moves: a model, and the three kinds of operator that move it, in the paper's order (Chiba,
@@ -38,8 +38,8 @@ class Scene {
   virtual void sample() noexcept = 0;              ///< each element reads it
   virtual void project(double dt_s) noexcept = 0;  ///< and is moved: the pose
 
-  // The same in parts that different threads may run at the same time: all parts of sample, then all of project. The
-  // pose is the same, bit for bit. What is not worth sharing out does all in its first part.
+  // The same in parts that different threads can run at the same time: all parts of sample, then all of project. The
+  // pose is the same, bit for bit. A small scene does everything in its first part.
   virtual void sample_part(Part part) noexcept {
     if (part.index == 0) sample();
   }
@@ -47,39 +47,39 @@ class Scene {
     if (part.index == 0) project(dt_s);
   }
 
-  /// What never changes. Valid for the scene's life.
+  /// The constant part. Valid for the scene's life.
   virtual const pose::Skeleton& skeleton() const noexcept = 0;
 
-  /// No joint moves farther than this in one tick of dt_s, whatever the wind does: steps, gaps, turns. The bound is
-  /// derived in the scene's file.
+  /// The maximum movement of a joint in one tick of dt_s, for any wind: steps, gaps, turns. The bound is derived in the
+  /// scene's file.
   virtual double largest_joint_step_m(double dt_s) const noexcept = 0;
 
   /// The pose after the last tick; the rest pose before the first.
   virtual const pose::Pose& pose() const noexcept = 0;
 };
 
-/// Where a scene stands in the world: its own origin, and what in it is north.
+/// A scene's placement in the world: its origin, and its north.
 struct Placement {
   double x_m = 0.0;
   double y_m = 0.0;
   double z_m = 0.0;
-  double heading_deg = 0.0;  ///< where the scene's north points to, clockwise from the world's
+  double heading_deg = 0.0;  ///< direction of the scene's north, clockwise from the world's
 };
 
-/// What a scene is made with, besides its parameters.
+/// Further inputs for making a scene, besides its parameters.
 struct Setup {
-  std::uint64_t seed = 0;  ///< everything random in the model and its noises comes from it
+  std::uint64_t seed = 0;  ///< determines everything random in the model and its noises
   Placement placement = {};
   SimdRow row = best_simd_row();
   /// The gusts of the wind that the scene will be given, shared with all other scenes and with the wind's source.
-  /// Without, the wind is the same everywhere, and what differs from place to place is the scene's own noise.
+  /// If null, the wind is uniform, and the scene's own noise varies it from place to place.
   std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr;
 };
 
-/// A parameter that a scene had once.
+/// A former parameter of a scene.
 struct RetiredParameter {
   std::string_view name;
-  std::string_view now;  ///< what to write in its place, or why nothing is needed: "is now strokes, ..."
+  std::string_view now;  ///< its replacement, or why nothing is needed: "is now strokes, ..."
 };
 
 /// A kind of scene: one constant `kXScene` in its own file, listed in engine/scenes/CMakeLists.txt.
@@ -87,9 +87,9 @@ struct Description {
   std::string_view name;
   std::string_view summary;
   std::span<const Parameter> parameters;
-  /// Lays the model out where it stands.
+  /// Makes the scene, with its model at its place.
   std::unique_ptr<Scene> (*make)(const ParameterValues& values, const Setup& setup);
-  /// Calm air from the start keeps it in its rest pose, bit for bit. What burns is not still.
+  /// Calm air from the start keeps it in its rest pose, bit for bit. Fire is not still.
   bool is_still_in_calm = true;
   std::span<const RetiredParameter> retired = {};
 };

@@ -10,8 +10,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// What is left of a wind that has ceased: below it a wind moves nothing, and the filter would decay without end in
-/// numbers that processors are slow with.
+/// A smaller wind is set to 0: it moves nothing, and the filter would decay to denormal numbers, which are slow.
 constexpr double kCalm_m_s = 1e-12;
 
 void settle(math::CriticallyDamped& follower) noexcept {

@@ -10,25 +10,24 @@ namespace yuragi::scenes {
 
 struct Placement;
 
-/// What of the wind over the ground a scene feels in its place.
+/// The part of the wind over the ground that a scene uses at its place.
 enum class WindPart : std::uint8_t {
-  kAll,   ///< with all gusts; those of the noise where it is given
-  kMean,  ///< without any: for a scene whose elements read the gusts each in its own place
+  kAll,   ///< with all gusts; those of the noise if it is given
+  kMean,  ///< without gusts: for a scene whose elements read the gusts at their own places
 };
 
-/// The wind as a scene feels it: what is too strong is cut to kStrongestSceneWind_m_s, and a step becomes a quick
-/// swell, so that no input whatever makes a scene jump. It lags by 2 / kOmega_rad_s = 0.1 s.
+/// The wind for a scene: limited to kStrongestSceneWind_m_s, and smoothed, so that no input makes a scene jump. It lags
+/// by 2 / kOmega_rad_s = 0.1 s.
 ///
-/// From one tick of dt to the next it changes by at most largest_step_m_s(dt), whatever comes in: its rate is the input
+/// From one tick of dt to the next it changes by at most largest_step_m_s(dt), for any input: its rate is the input
 /// convolved with the derivative of the impulse response w^2 t exp(-w t), whose magnitude integrates to 2 w / e, and
-/// the input is never longer than kStrongestSceneWind_m_s. It is never longer than that itself, since the impulse
+/// the input is never longer than kStrongestSceneWind_m_s. It is never longer than that itself, because the impulse
 /// response is positive and integrates to 1. Thread-safe: no. Realtime-safe: yes.
 class Wind {
  public:
   static constexpr double kOmega_rad_s = 20.0;
 
-  /// The wind in the place of a scene. `gusts`: the noise of the wind that it will be given; without it, only what was
-  /// measured blows there.
+  /// The wind at the place of a scene. `gusts`: the noise of its wind; if null, only the measured wind is used.
   explicit Wind(const Placement& placement, std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr,
                 WindPart part = WindPart::kAll);
 

@@ -8,7 +8,7 @@
 
 namespace yuragi::scenes {
 
-/// A part's strands, in whole blocks, of any array that has an element for each.
+/// A part's strands, in whole blocks, of any array with an element per strand.
 template <class Value>
 std::span<Value> strands_of(Part part, std::span<Value> values) noexcept {
   const std::size_t blocks = values.size() / pose::kStrandsPerBlock;

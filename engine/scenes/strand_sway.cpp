@@ -19,14 +19,14 @@
 namespace yuragi::scenes {
 namespace {
 
-/// Strands sway by themselves at rates that differ by so much at most.
+/// Maximum difference of the strands' natural rates.
 constexpr double kPaceSpread = 0.15;
 
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
 /// How many standard deviations the canopy's waves reach.
 constexpr double kMaxCanopyWave = 2.2;
 
-/// The shorter, the faster: each strand's own rate against that of one of mean length.
+/// Shorter strands are faster: each strand's rate relative to that of one of mean length.
 std::vector<float> natural_rates_hz(const pose::StrandSkeleton& strands, double mean_hz) {
   const auto all = std::span(strands.link_length_m).first(strands.strand_count);
   const double mean_m =
@@ -98,7 +98,7 @@ void StrandSway::shift(const wind::ground::Wind& wind, double dt_s) noexcept {
     outside_->canopy.shift(canopy_carry_ * wind_.east_m_s(), canopy_carry_ * wind_.south_m_s(), dt_s);
     return;
   }
-  // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
+  // The wind on the ground moves with the wind, and its strength along the wind with the path.
   own_->noise.shift(spec_.carry * wind_.east_m_s(), spec_.carry * wind_.south_m_s(), dt_s);
   own_->way.add(spec_.carry * wind_.speed_m_s() * dt_s, spec_.noise.period_m);
 }
@@ -116,7 +116,7 @@ void StrandSway::sample_part(Part part) noexcept {
     }
     return;
   }
-  // How strong the wind is at each strand, as a factor.
+  // The strength of the wind at each strand, as a factor.
   const std::span<float> strength = strands_of(part, std::span(own_->strength));
   const auto first = static_cast<std::size_t>(strength.data() - own_->strength.data());
   own_->noise.sample(own_->places, row_, strength, static_cast<float>(spec_.turbulence), 1.0F, 0.0F,
@@ -129,7 +129,7 @@ void StrandSway::project_part(Part part, double) noexcept {
   const std::span<float> bend_east_rad = strands_of(part, std::span(pose.bend_east_rad));
   const std::span<float> bend_south_rad = strands_of(part, std::span(pose.bend_south_rad));
 
-  // The wind bends the strand toward where it blows.
+  // The wind bends the strand downwind.
   if (outside_) {
     operators::LocalBendingJob{.wind_east_m_s = strands_of(part, std::span<const float>(outside_->east_m_s)),
                                .wind_south_m_s = strands_of(part, std::span<const float>(outside_->south_m_s)),

@@ -22,18 +22,18 @@ namespace yuragi::scenes {
 struct StrandSwaySpec {
   double max_bend_rad = 1.4;
   double half_bend_speed_m_s = 7.0;
-  double turbulence = 0.4;      ///< own gusts: how much the wind differs from place to place, as a part of it
-  double gust_strength = 0.2;   ///< own gusts: how much it swells along its way, in the same measure
+  double turbulence = 0.4;      ///< own gusts: variation of the wind from place to place, relative to it
+  double gust_strength = 0.2;   ///< own gusts: variation along the wind's path, relative to it
   double hybrid = 1.0;          ///< 0: the noise alone; 1: each strand a damped oscillator
   double natural_hz = 2.0;      ///< of an oscillator of mean length; longer strands are slower
   double damping_ratio = 0.2;   ///< above 0, below 1
-  double carry = 1.0;           ///< the noise goes with this part of the wind's speed: in a coat the air is slower
-  bool has_own_gusts = false;   ///< and not those of the wind outside, where the setup has these
-  double canopy_waves = 0.15;   ///< beside the gusts outside: how much the stand's own waves vary the wind, as a part
+  double carry = 1.0;           ///< the noise moves with this part of the wind's speed: in a coat the air is slower
+  bool has_own_gusts = false;   ///< instead of those of the wind, if the setup has these
+  double canopy_waves = 0.15;   ///< with gusts of the wind: its variation by the stand's own waves, relative
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
-  double plant_height_m = 0.7;  ///< decides how fast the stand's own waves run (canopy_carry())
+  double plant_height_m = 0.7;  ///< determines the speed of the stand's own waves (canopy_carry())
   double shortest_canopy_wave_m = 2.0;  ///< the longest is twice as long
-  double finest_wind_cell_m = 0.5;      ///< the wind outside is read at nodes no nearer to each other (WindGrid)
+  double finest_wind_cell_m = 0.5;      ///< minimum distance of the nodes at which the wind is read (WindGrid)
 };
 
 /// Strands in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine
@@ -44,18 +44,18 @@ struct StrandSwaySpec {
 ///   project  a 1-D noise (LineCut) gives Wind-speed, the strength along the wind; both bend    BendingJob
 ///            the links of the strand, and a damped oscillator overshoots and sways on          OscillatorJob
 ///
-/// Where the wind brings gusts of its own (Setup::gusts), these are the wind on the ground: each strand reads the
+/// If the wind has gusts (Setup::gusts), these are the wind on the ground: each strand reads the
 /// wind where it stands (WindGrid), and is bent by it (LocalBendingJob). Over a few metres those gusts hardly differ;
-/// what is seen as bands that run over a stand are waves of its own, born where the wind is slowed at the tops of the
-/// plants and a few times as long as these are high (Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence
-/// in vegetation canopies"). They are a band of noise that varies the wind on its way, and run at 1.8 times the wind at
-/// the tops (canopy_carry()), half as fast as the wind 10 m up where blades are 0.7 m long. In nature they are longer
-/// across the wind than along it; these are not, since a tile cannot turn with the wind.
+/// the visible bands that run over a stand are its own waves, which arise where the plants' tops slow the wind and are
+/// a few times as long as the plants are high (Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence in
+/// vegetation canopies"). They are a band of noise that varies the wind, and run at 1.8 times the wind at the tops
+/// (canopy_carry()), half as fast as the wind 10 m up where blades are 0.7 m long. In nature they are longer across the
+/// wind than along it; these are not, because a tile cannot turn with the wind.
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: a tick.
 class StrandSway final : public Scene {
  public:
-  /// `place_x_m` and `place_z_m`: where each strand reads its own noise; `flexibility`: of each. All have
+  /// `place_x_m` and `place_z_m`: the place at which each strand reads its own noise; `flexibility`: of each. All have
   /// strands.padded_count() elements.
   StrandSway(pose::StrandSkeleton strands, std::span<const float> place_x_m, std::span<const float> place_z_m,
              std::vector<float> flexibility, const StrandSwaySpec& spec, const Setup& setup);
@@ -71,11 +71,10 @@ class StrandSway final : public Scene {
 
   /// With s the wind at a strand in half-bend speeds, the bend is max s^2/(1+s^2)
   /// toward the wind: its slope over s, as a vector, is at most 3 sqrt(3)/8 max, so in a tick it changes by at most
-  /// that times the largest changes of wind, strength and noise at their largest other factors (of the wind and the
-  /// canopy's waves, where the gusts are in the wind), and never by more than from one extreme to the other. An
-  /// oscillator moves by at most its largest gain times that, and by at most what its largest rate gives for a bend
-  /// that never exceeds max. A joint moves by at most half the strand's length (and a link) times that, since link i of
-  /// n turns by i/n of the bend.
+  /// that times the largest changes of wind, strength and noise times the maximum of the other factors (of the wind and
+  /// the canopy's waves, if the gusts are in the wind), and by at most its whole range. An oscillator moves by at most
+  /// its largest gain times that, and by at most its largest rate for a bend within max. A joint moves by at most half
+  /// the strand's length (and a link) times that, because link i of n turns by i/n of the bend.
   double largest_joint_step_m(double dt_s) const noexcept override;
 
  private:
@@ -88,10 +87,10 @@ class StrandSway final : public Scene {
     noise::Tile2 along;  ///< Wind-speed, the strength along the wind's way: a line through a noise
     noise::LineCut way;
     double largest_along = 0.0, steepest_along_per_m = 0.0;
-    std::vector<float> strength;  ///< of the wind, as a factor; of each strand
+    std::vector<float> strength;  ///< of the wind, a factor for each strand
   };
 
-  /// Those of the wind outside.
+  /// The gusts of the wind.
   struct OutsideGusts {
     OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec, const Setup& setup);
 
@@ -120,7 +119,7 @@ class StrandSway final : public Scene {
   pose::Pose pose_;
 };
 
-/// The keys that go with it (max_bend, half_bend_speed, turbulence ... beta_meaning), with these as their defaults.
+/// Its keys (max_bend, half_bend_speed, turbulence ... beta_meaning), with these defaults.
 Fields<StrandSwaySpec> strand_sway_fields(const StrandSwaySpec& defaults);
 
 }  // namespace yuragi::scenes

@@ -6,10 +6,10 @@
 namespace yuragi::scenes {
 namespace {
 
-/// Nodes are read so many at a time.
+/// Number of nodes that are read at a time.
 constexpr std::size_t kAtOnce = 128;
 
-/// Where the wind comes from that will be at some places when it has been carried on.
+/// The upwind origin of the wind that will be at some places.
 struct Upwind {
   std::array<double, kAtOnce> x_m, z_m;
   std::size_t count = 0;
@@ -37,7 +37,7 @@ void read_tapes(const wind::ground::WindTapes& tapes, const Upwind& from,
 }  // namespace
 
 TapeNodes::TapeNodes(const GustNodes& nodes) : known_(nodes.x_m().size()), gain_(nodes.x_m().size()) {
-  // A cache line between two octaves: arrays whole pages apart drive each other out of the cache.
+  // A cache line between two octaves: arrays that are whole pages apart would evict each other from the cache.
   constexpr std::size_t kLine = 64 / sizeof(float);
   const auto padded = [](std::size_t count) { return (count / kLine + 2) * kLine; };
   const std::size_t fine = nodes.x_m().size();

@@ -33,7 +33,7 @@
 //
 //   shift    the wind carries its gusts over the ground, more slowly a finer noise through the crown,
 //            and the finest along the leaves                                                          CarriedNoise
-//   sample   the wind at each branch, and how hard it pulls there, against the mean wind              BranchForceJob
+//   sample the wind at each branch, and its force there, against the mean wind              BranchForceJob
 //            how far each branch is from the windward side                                            WindSideJob
 //            what is above a threshold that rises from there moves it up and down, the rest sideways  SplitJob
 //            how leaves respond to the wind at each twig, and the noise that each leaf reads          LeafResponseJob
@@ -41,7 +41,7 @@
 //            which overshoots and sways on at a pace of its own, a damped oscillator                  OscillatorJob
 //            a leaf leans and flutters as its petiole lets it                                         FlutterJob
 //
-// What a tree is like in the wind, from which the figures come: de Langre 2008, "Effects of wind on plants" (drag and
+// Sources of the figures: de Langre 2008, "Effects of wind on plants" (drag and
 // streamlining); James, Haritos and Ades 2006, "Mechanical stability of trees under dynamic loads", and Jackson and
 // others 2019, "An architectural understanding of natural sway frequencies in trees" (each branch has its own frequency
 // and damping); Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence in vegetation canopies" (the gusts
@@ -171,7 +171,7 @@ constexpr double kWindSideFloor = 0.4;
 /// A wind much below this has no windward side.
 constexpr double kSidelessWind_m_s = 1.0;
 
-/// Below this the mean wind is no measure of its gusts.
+/// Below this the mean wind is no measure of the gusts.
 constexpr double kMinMean_m_s = 0.3;
 
 /// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2 and with the crown's
@@ -179,34 +179,34 @@ constexpr double kMinMean_m_s = 0.3;
 constexpr double kUsualNoise = 0.4;
 
 // The threshold of the split: it rises from -1.5 standard deviations of the noise at the windward side to 1.5 at the
-// lee side, and the step there is one wide.
+// lee side, with a soft step one wide.
 constexpr double kThresholdRise = 3.0 * kUsualNoise / (2.0 - kWindSideFloor);
 constexpr double kThreshold = -1.5 * kUsualNoise - kThresholdRise * kWindSideFloor;
 constexpr double kSplitWidth = kUsualNoise;
 
-/// Beyond it the tree's own gusts are cut, in standard deviations; and the finer noises of crown and leaves.
+/// Limit of the tree's own gusts, in standard deviations; and of the finer noises of crown and leaves.
 constexpr double kMaxOwnGust = 3.0;
 constexpr double kLargestFine = 2.2;
 
-/// Gusts that differ within less than this move a crown as one.
+/// Gusts that vary within less than this move a crown as a whole.
 constexpr double kCrownCell_m = 1.0;
 
-// The gusts that arise in the crown: as long as limbs are, and carried at half the speed of the wind outside.
+// The gusts that arise in the crown: as long as limbs, and carried at half the speed of the wind.
 constexpr double kCrownShortest_m = 1.5;
 constexpr double kCrownLongest_m = 5.0;
 constexpr double kCrownCarry = 0.5;
 
-/// How much faster limbs and twigs sway than the trunk, and how much more that is damped.
+/// The rates of limbs and twigs relative to the trunk, and their additional damping.
 constexpr std::array<double, 3> kPace = {1.0, 2.0, 4.0};
 constexpr std::array<double, 3> kDamping = {1.0, 1.0, 1.25};
 constexpr double kMaxDamping = 0.95;
 
-// A branch sways the faster the shorter it is against the median of its kind: by the power of 3/4, up to 30 percent.
+// Branches shorter than the median of their kind sway faster: by the power of 3/4, up to 30 percent.
 constexpr double kPacePower = 0.75;
 constexpr double kMaxPace = 1.3;
 
-// The noise that leaves read. Its waves, as long as some leaves of a spray, go along it at a speed that rises with the
-// wind but slowly, so that leaves flutter at 2 to 6 Hz: 0.75 (2.5 + 0.22 u) u / (u + 0.2), u in m/s.
+// The noise of leaves. Its waves, as long as several leaves of a spray, move along it at a speed that rises slowly with
+// the wind, so that leaves flutter at 2 to 6 Hz: 0.75 (2.5 + 0.22 u) u / (u + 0.2), u in m/s.
 constexpr double kLeafShortest_m = 0.4;
 constexpr double kLeafLongest_m = 0.9;
 
@@ -215,13 +215,15 @@ double leaf_carry(double wind_m_s) {
   return 0.75 * (2.5 + 0.22 * wind_m_s) / (wind_m_s + 0.2);
 }
 
-/// How much further along x and z what is read in the crown is for each metre up: what is one above the other differs.
+/// The shift along x and z, per metre of height, of the place at which the crown is read, so that different heights
+/// differ.
 constexpr std::array<double, 2> kHeightSkew = {0.5, 0.7};
 
-/// How far the axis of a leaf's flutter is turned at most from its own direction.
+/// Maximum turn of the axis of a leaf's flutter from the leaf's direction.
 constexpr double kMaxTwist_rad = 40.0 * kRadPerDeg;
 
-/// A bare twig leaves its branch at this part of the angle of a leaf, and gives way to the wind as this part of one.
+/// A bare twig leaves its branch at this part of the angle of a leaf, and yields to the wind by this part of a leaf's
+/// response.
 constexpr double kBareTwigAngle = 0.75;
 constexpr double kBareTwigGive = 0.12;
 
@@ -257,13 +259,13 @@ CarriedNoiseSpec leaf_noise(std::uint64_t seed) {
           .seed = seed ^ math::stream_id("tree wind in the leaves")};
 }
 
-/// One generation of wood: where its branches stand, and what they read.
+/// One generation of wood: the positions of its branches, and the noises that they read.
 struct Wood {
   std::size_t level = 0;
   std::size_t count = 0;
   double largest_hz = 0.0;
   double damping_ratio = 0.0;
-  CarriedPlaces places, crown_places;  ///< of the middle of each branch, on the ground and in the crown
+  CarriedPlaces places, crown_places;  ///< for the middle of each branch, on the ground and in the crown
   std::size_t first_on_grid = 0;       ///< the same on the grid of the wind outside
   std::vector<float> side_x, side_z;   ///< the same from the tree's middle, in its radii
   std::vector<float> gain;             ///< rad
@@ -288,7 +290,7 @@ struct Foliage {
   std::vector<float> noise;
 };
 
-/// Where the middle of a strand is at rest.
+/// The position of the middle of a strand at rest.
 struct StrandMiddle {
   double x_m, y_m, z_m;
 };
@@ -383,7 +385,7 @@ class Tree final : public Scene {
  private:
   Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const Setup& setup);
 
-  /// Where branches are on the ground, x and z.
+  /// The positions of branches on the ground, x and z.
   using Places = std::array<std::vector<float>, 2>;
 
   void add_wood(const pose::TreeSkeleton& tree, std::size_t level, const Placement& placement, Places& all_m);
@@ -403,9 +405,9 @@ class Tree final : public Scene {
   double leaf_lean_rad_, leaf_flutter_rad_, half_lean_speed_m_s_;
 
   Wind wind_;         ///< without the gusts, which differ from branch to branch
-  Wind middle_wind_;  ///< with those of the tree's middle
+  Wind middle_wind_;  ///< with those at the tree's middle
   CarriedNoise noise_, crown_noise_, leaf_noise_;
-  std::optional<WindGrid> outside_;  ///< the wind at each branch, where it brings its gusts; noise_ is not read then
+  std::optional<WindGrid> outside_;  ///< the wind at each branch, if it has gusts; noise_ is then unused
   std::array<Wood, kLeaves> wood_;
   Foliage leaves_;
   std::array<double, pose::kMaxTreeLevels> levers_m_;
@@ -465,7 +467,7 @@ void Tree::add_wood(const pose::TreeSkeleton& tree, std::size_t level, const Pla
   wood.count = strands.strand_count;
   wood.damping_ratio = std::min(kDamping[level] * damping_ratio_, kMaxDamping);
 
-  // Thickness and length relative to the median branch of its kind set how far it bends, and how fast it sways.
+  // Thickness and length relative to the median branch of its kind determine its bend and its rate.
   std::vector<double> thickness_m;
   std::vector<double> length_m;
   for (std::size_t i = 0; i < wood.count; ++i) {
@@ -526,7 +528,7 @@ void Tree::add_leaves(const pose::TreeLevel& level, std::uint64_t seed) {
     leaves_.largest_give = std::max(leaves_.largest_give, species_.petiole * liveliness);
     leaves_.liveliest = std::max(leaves_.liveliest, liveliness);
 
-    // It nods about an axis across its own direction; one that hangs straight down, about any level axis.
+    // It nods about an axis across its own direction; if it hangs straight down, about any level axis.
     const double twist_rad = kMaxTwist_rad * (2.0 * random.uniform(2 * i + 1) - 1.0);
     const auto rest_x = static_cast<double>(strands.rest_x[i]);
     const auto rest_z = static_cast<double>(strands.rest_z[i]);
@@ -543,8 +545,8 @@ void Tree::add_leaves(const pose::TreeLevel& level, std::uint64_t seed) {
   }
 }
 
-/// The wind at each branch: that of the ground there, or the same everywhere with the tree's own gusts; and the gusts
-/// that arise in the crown.
+/// The wind at each branch: that of the ground there, or a uniform one with the tree's own gusts; plus the gusts that
+/// arise in the crown.
 void Tree::blow_on(Wood& wood) noexcept {
   const auto largest = static_cast<float>(kLargestFine * crown_gusts_);
   crown_noise_.sample(wood.crown_places, row_, wood.gust, static_cast<float>(crown_gusts_), 1.0F, 1.0F - largest,
@@ -589,7 +591,7 @@ void Tree::sample_wood(Wood& wood) noexcept {
                          .place_z = wood.side_z,
                          .distance = wood.distance}
       .run();
-  // Those on the windward side bend more than the mean of their kind, those on the lee side less.
+  // Branches on the windward side bend more than the mean of their kind, those on the lee side less.
   double nearness = 0.0;
   for (std::size_t i = 0; i < wood.count; ++i) nearness += 1.0 / static_cast<double>(wood.distance[i]);
   wood.force = static_cast<double>(force.mean_force()) * static_cast<double>(wood.count) / nearness;
@@ -629,9 +631,9 @@ void Tree::project_wood(Wood& wood, pose::StrandPose& pose) noexcept {
       .run();
 }
 
-// How far the bend of a branch may change in a tick. TiltJob gives no bend beyond G = hypot(max_tilt, max_swing),
-// whatever wind and noises do: so by itself it changes by no more than 2 G, from one extreme to the other, and an
-// oscillator that it drives, whatever course it takes, by no more than the oscillator's largest rate for such a drive.
+// How far the bend of a branch may change in a tick. TiltJob gives no bend beyond G = hypot(max_tilt, max_swing): so
+// the bend changes by no more than 2 G, its whole range, and an oscillator that it drives by no more than the
+// oscillator's largest rate for such a drive.
 double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept {
   const double largest_rad = math::length(max_tilt_rad_, max_swing_rad_);
   const double swayed_rad =
@@ -639,12 +641,12 @@ double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept
   return (1.0 - hybrid_) * 2.0 * largest_rad + hybrid_ * swayed_rad;
 }
 
-// The bend of a leaf is give lean W + axis flutter V noise, W and V being how it responds to the wind u at its twig, 0
-// to 1. u is that of the ground (at most L, and changing by at most dL a tick: Wind, WindGrid) times a factor for
-// the crown's gusts and the tree's own, each the noise (cut at n, and changing by at most largest_change() of its
+// The bend of a leaf is give lean W + axis flutter V noise, W and V being its response to the wind u at its twig, 0 to
+// 1. u is that of the ground (at most L, and changing by at most dL a tick: Wind, WindGrid) times a factor for the
+// crown's gusts and the tree's own, each the noise (cut at n, and changing by at most largest_change() of its
 // CarriedNoise) times its deviation d. So u is at most L (1 + sum of d n), and changes by at most dL (1 + sum of d n) +
-// L (sum of d dn). W and V are nowhere steeper over u than LeafResponseJob's constants, and the leaves' noise is cut
-// and carried as the others. Neither part changes by more than from one extreme to the other.
+// L (sum of d dn). The slopes of W and V over u are at most LeafResponseJob's constants, and the leaves' noise is cut
+// and carried like the others. Neither part changes by more than its whole range.
 double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   const double wind_step_m_s = Wind::largest_step_m_s(dt_s);
   const auto change = [&](const CarriedNoise& noise, double carry, double largest) {
@@ -659,7 +661,7 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   }
   const double step_m_s = wind_step_m_s * gust + kStrongestSceneWind_m_s * gust_step;
 
-  // The noise of the leaves goes the fastest in the strongest wind.
+  // The noise of the leaves is fastest in the strongest wind.
   const double noise_step = change(leaf_noise_, leaf_carry(kStrongestSceneWind_m_s), kLargestFine);
   const double lean_step = std::min(operators::kSteepestBendShare * step_m_s / half_lean_speed_m_s_, 2.0);
   const double flutter_step = std::min(

@@ -17,14 +17,14 @@ constexpr double kGoldenAngle_rad = kPi * (3.0 - 2.23606797749979);  // 137.5 de
 constexpr double kTwigRadiusPerHeight = 0.008 / 8.0;
 constexpr double kTipRadiusShare = 0.3;  ///< of the radius at the foot, for a twig
 
-/// No branch is longer than this times the habit's length.
+/// Maximum length of a branch, relative to the habit's length.
 constexpr double kMaxVigour = 1.06;
 
-/// Leaves stand at nodes, this many from a twig's foot to its tip, a spray at 16 that follow one another. (So the
-/// joints that they grow from are few, and lie in the cache.)
+/// Leaves grow at nodes, this many from a twig's foot to its tip, in sprays of 16 consecutive leaves. (So they have few
+/// joints as roots, which stay in the cache.)
 constexpr std::size_t kNodesOfATwig = 36;
 
-/// How long a whorl is, as a share of the way from one to the next.
+/// Length of a whorl, as a share of the distance between whorls.
 constexpr double kWhorlLength = 0.3;
 
 struct TreeVector {
@@ -44,8 +44,8 @@ TreeVector unit(TreeVector a) {
   return 1.0 / std::sqrt(dot(a, a)) * a;
 }
 
-/// The unit vector across `along` (a unit vector) at an angle around it. At 0 it is level, and goes on smoothly but
-/// where `along` is upright.
+/// The unit vector across `along` (a unit vector) at an angle around it. At 0 it is level, and continuous except where
+/// `along` is upright.
 TreeVector across(TreeVector along, double around_rad) {
   const TreeVector level = cross({0.0, 1.0, 0.0}, along);
   const TreeVector first = dot(level, level) > 1e-12 ? unit(level) : TreeVector{1.0, 0.0, 0.0};
@@ -69,7 +69,7 @@ struct Shoot {
 Shoot shoot(TreeVector root, TreeVector rest, TreeVector to, double curl_rad, double length_m, std::size_t links) {
   const double count = static_cast<double>(links);
   const TreeVector side = to + -dot(to, rest) * rest;
-  const double flat = std::sqrt(dot(side, side));  // upright or hanging: there is nowhere to curl to
+  const double flat = std::sqrt(dot(side, side));  // upright or hanging: no direction to curl to
   return {.root = root,
           .rest = rest,
           .curl = flat > 1e-3 ? 1.0 / flat * side : across(rest, 0.0),
@@ -77,7 +77,7 @@ Shoot shoot(TreeVector root, TreeVector rest, TreeVector to, double curl_rad, do
           .link_length_m = length_m / count};
 }
 
-/// The joints of a shoot at rest: where a child stands, and how the link goes that it stands on.
+/// The joints of a shoot at rest: the place of a child, and the direction of the link on which it grows.
 struct Course {
   std::vector<TreeVector> joint;
   std::vector<TreeVector> direction;
@@ -96,8 +96,8 @@ Course course_of(const Shoot& shoot, std::size_t links) {
   return course;
 }
 
-/// Where branch `i` of `count` grows in whorls of about `whorl`: 0 at the lowest place, 1 at the parent's tip.
-/// `jitter`: 0 to 1, by which it is moved within the whorl.
+/// The place of branch `i` of `count` in whorls of about `whorl`: 0 at the lowest place, 1 at the parent's tip.
+/// `jitter`: 0 to 1, its shift within the whorl.
 double place_in_whorls(std::size_t i, std::size_t count, std::size_t whorl, double jitter) {
   const double even = (static_cast<double>(i) + 0.2 + 0.6 * jitter) / static_cast<double>(count);
   if (whorl <= 1) return even;
@@ -142,7 +142,7 @@ class Grower {
   }
 
  private:
-  /// All but upright, with a slight bow.
+  /// Nearly upright, with a slight bow.
   void grow_trunk() {
     const math::RandomStream random(spec_.seed, math::stream_id("tree trunk"));
     const double around_rad = 2.0 * kPi * random.uniform(0);
@@ -174,7 +174,8 @@ class Grower {
         const TreeVector rest = std::cos(angle_rad) * course.direction[link] +
                                 std::sin(angle_rad) * across(course.direction[link], around_rad);
         const double rank = i % 2 == 0 ? 1.0 : habit.minor_share;
-        // None outgrows its neighbours by much: what stands out of a crown is in the wind, and light is everywhere.
+        // None is much larger than its neighbours: parts above the crown are exposed to the wind, and light is
+        // everywhere.
         const double vigour = std::min(random_factor(random, index + 4, 0.15), kMaxVigour);
         const double length_m = rank * interpolated(habit.length_share, part) * height_m_ * vigour;
         const double lift_rad = habit.lift_deg * kRadPerDeg * random_factor(random, index + 6, 0.3);
@@ -187,15 +188,14 @@ class Grower {
     return branches;
   }
 
-  /// Where a spray of leaves begins.
+  /// The root of a spray of leaves.
   struct Spray {
     std::size_t twig;
     std::size_t node;
   };
 
-  /// Sprays one after the other along the twigs: what their number leaves over of a whole number of them a twig puts
-  /// each somewhere else on its twig. In the order in which their roots lie together in memory: block of twigs by
-  /// block, and in it by node (JointPositions).
+  /// Sprays one after the other along the twigs: the remainder of their number per twig shifts them from twig to twig.
+  /// In the order of their roots in memory: by blocks of twigs, then by node (JointPositions).
   std::vector<Spray> sprays() const {
     const std::size_t count = (spec_.leaves + pose::kStrandsPerBlock - 1) / pose::kStrandsPerBlock;
     const std::size_t most = kNodesOfATwig - pose::kStrandsPerBlock;
@@ -274,7 +274,7 @@ class Grower {
     return static_cast<std::size_t>(std::clamp(part * links, 0.0, links - 1.0));
   }
 
-  /// What is behind the last strand stands upright at the world's origin and has no length.
+  /// The padding after the last strand is upright at the world's origin and has length 0.
   static void fill(pose::TreeLevel& level, const std::vector<Shoot>& shoots, std::size_t links) {
     pose::StrandSkeleton& strands = level.strands;
     strands.strand_count = shoots.size();
@@ -333,9 +333,9 @@ std::array<double, pose::kMaxTreeLevels> tree_levers_m(const pose::TreeSkeleton&
   std::array<double, pose::kMaxTreeLevels> largest_m = {};
   for (std::size_t top = 0; top < tree.levels.size(); ++top) {
     for (std::size_t tip = 0; tip < tree.levels[top].strands.strand_count; ++tip) {
-      // From the tip of a strand down to the ground: of each strand on the way, the links up to the one that goes on.
+      // From the tip of a strand down to the ground: for each strand on the path, the links up to the branch.
       std::array<double, pose::kMaxTreeLevels> lever_m = {};
-      double beyond_m = 0.0;  // the way from there to the tip
+      double beyond_m = 0.0;  // the distance from there to the tip
       std::size_t level = top;
       std::size_t strand = tip;
       double links = static_cast<double>(tree.levels[top].strands.links_per_strand);  // up to it

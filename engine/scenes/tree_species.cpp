@@ -34,7 +34,7 @@ constexpr std::array kSpecies = {
                           .leaf_width_share = 0.5,
                           .leaf_droop_deg = 35,
                           .leafless_share = 0.3}},
-    // A broom: many steep limbs from one place, which part like a fan and arch a little outward.
+    // A broom: many steep limbs from one place, which spread like a fan and arch a little outward.
     TreeSpecies{.name = "zelkova",
                 .sway_deg = {1.05, 4.5, 16.5},
                 .beta_horizontal = 0.15,

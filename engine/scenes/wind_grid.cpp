@@ -28,8 +28,8 @@ std::size_t nodes_read(std::span<const std::uint32_t> places, std::size_t nodes)
 
 }  // namespace
 
-/// A square torus over all places, a power of two of nodes a side. Of its nodes those are computed that a place reads:
-/// the last column and row are beyond every place, so that none reads where the torus closes.
+/// A square torus over all places, a power of two of nodes a side. Only nodes that a place reads are computed: the last
+/// column and row are beyond every place, so that no place reads across the torus's seam.
 WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m, double finest_cell_m) {
   if (x_m.empty()) return;
   const auto [west, east] = std::minmax_element(x_m.begin(), x_m.end());
@@ -79,7 +79,7 @@ void WindGrid::step(const wind::ground::Wind& wind, double dt_s) noexcept {
   follow(south_, rate_rad_s, dt_s);
 }
 
-/// Line by line in a straight line toward what was read last, to be there when it is due.
+/// Line by line, linearly toward the values that were read last, to arrive when the next ones are due.
 void WindGrid::approach_targets(double dt_s) noexcept {
   for (std::size_t line = 0; line < due_in_s_.size(); ++line) {
     if (due_in_s_[line] <= 0.0) continue;
@@ -110,7 +110,7 @@ void WindGrid::read(const wind::ground::Wind& wind, const ReadingSchedule::Due& 
   for (Component* component : {&east_, &south_}) component->target = component->next_target;
 }
 
-/// What is known at each node, and the noise that fills the rest (along the mean wind and to the left of it, turned
+/// The known wind at each node, and the noise that fills the rest (along the mean wind and to the left of it, turned
 /// into the world), as they will be lead_s later.
 void WindGrid::read_lines(const wind::ground::Wind& wind, const NodeRange& lines, double lead_s) noexcept {
   if (lines.count == 0) return;

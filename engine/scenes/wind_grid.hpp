@@ -15,52 +15,53 @@
 
 namespace yuragi::scenes {
 
-/// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as Wind does (cut to
-/// kStrongestSceneWind_m_s, smoothed by 0.1 s), gusts of the place included; places between nodes read it bilinearly.
+/// The wind at each place of a scene: a grid over the scene whose nodes each process the wind like Wind (limited
+/// to kStrongestSceneWind_m_s, smoothed by 0.1 s), including the gusts of the place; places between nodes are
+/// interpolated bilinearly.
 ///
 /// Reading the wind at a node costs most, and 12 times a second is enough (ReadingSchedule): at each tick a part of the
-/// lines of nodes is read, as the wind will be there when it is their turn again. That is known already, since the mean
-/// wind carries gusts and tapes there from where they are now; what it does not carry (a slope of the mean, a wind
-/// without tapes) comes later by the same 1/12 s. Until then a node's target goes there in a straight line, and the
-/// smoothing is quicker by what that line smooths. A wind without a tick's number is read everywhere at once.
+/// lines of nodes is read, as the wind will be at their next turn. That is already known, because the mean wind carries
+/// gusts and tapes there; other changes (a slope of the mean, a wind without tapes) are late by the same 1/12 s. Until
+/// then a node's target moves there linearly, and the smoothing is faster to compensate for this. A wind without a
+/// tick's number is read everywhere at once.
 ///
 /// The bound of a tick holds for this, too: a target goes from one end of its range to the other in 1/12 s at the
 /// soonest, so that the value's rate is at most twice the strongest wind times the mean of the filter's impulse
 /// response over the 1/12 s of its peak, 7.31 a second; of Wind it is the peak itself, 7.36.
 ///
 /// So a place's wind is never stronger than kStrongestSceneWind_m_s, and changes in a tick by at most
-/// Wind::largest_step_m_s, whatever comes in. Nodes are half a metre apart in scenes of up to 31 m; in larger ones
-/// the longer side has 63. Waves that they cannot hold are left out (GustNodes). Allocates when it is made, never
-/// afterwards. Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 1.3 ns a node that is read and
-/// layer, which makes 24 us for all nodes of a meadow of 7 m (256) and 0.34 ms for one of 60 m, three fifths of it if
-/// nothing evolves; a fifth of these each tick at 60 Hz; and 4 ns a place.
+/// Wind::largest_step_m_s, for any input. Nodes are half a metre apart in scenes of up to 31 m; in larger ones the
+/// longer side has 63. Waves too short for them are omitted (GustNodes). Allocates when it is made, never afterwards.
+/// Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 1.3 ns a node that is read and layer, which
+/// makes 24 us for all nodes of a meadow of 7 m (256) and 0.34 ms for one of 60 m, three fifths of it if nothing
+/// evolves; a fifth of these each tick at 60 Hz; and 4 ns a place.
 class WindGrid {
  public:
   /// Places: metres east and south of the middle of all scenes, as many of x as of z.
-  /// `finest_cell_m`: nodes are not nearer to each other. `columns`: how many places stand in a row, where they are the
-  /// rows of a grid: if those go along x, all of them together are read faster (GridSampleJob), to the same bits.
+  /// `finest_cell_m`: minimum distance of nodes. `columns`: the number of places in a row, if they are the rows of a
+  /// grid: if those are along x, all of them together are read faster (GridSampleJob), with the same bits.
   WindGrid(std::shared_ptr<const wind::turbulence::GustNoise> gusts, std::span<const float> x_m,
            std::span<const float> z_m, SimdRow row, double finest_cell_m = 0.5, std::size_t columns = 0);
 
   /// Advances by dt_s toward `wind`. Calm from the beginning stays calm, exactly.
   void step(const wind::ground::Wind& wind, double dt_s) noexcept;
 
-  /// The wind at as many places as the outputs have, from place `first` on.
+  /// The wind at the places from `first` on; the outputs set the number.
   void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
 
  private:
-  /// Which nodes there are, and where the places are between them.
+  /// The nodes, and the positions of the places between them.
   struct Layout {
     Layout(std::span<const float> x_m, std::span<const float> z_m, double finest_cell_m);
     GroundNodes nodes;
-    std::size_t torus_nodes = 2;                  ///< an edge of the torus on which places read them
+    std::size_t torus_nodes = 2;                  ///< nodes per edge of the torus on which places read them
     std::vector<std::uint32_t> place_x, place_z;  ///< on it
   };
-  /// One component of the wind at the nodes: toward where it goes, and how quickly it does.
+  /// One component of the wind at the nodes: its value, target and rate.
   struct Component {
     std::vector<float> value, target, rate_per_s;
     std::vector<float> next_target;  ///< where the target goes
-    noise::Tile2 on_torus;           ///< the values, where places read them
+    noise::Tile2 on_torus;           ///< the values, for reading between the nodes
   };
 
   void approach_targets(double dt_s) noexcept;
@@ -73,10 +74,10 @@ class WindGrid {
   Layout layout_;
   GustNodes gusts_;
   TapeNodes tape_nodes_;
-  std::vector<std::uint32_t> column_x_, row_z_;  ///< of the places, where they are a grid along the axes; else none
+  std::vector<std::uint32_t> column_x_, row_z_;  ///< of the places, if they are a grid along the axes; otherwise empty
   Component east_, south_;
   ReadingSchedule schedule_;
-  std::vector<double> due_in_s_;  ///< of each line: when its targets are to be the next ones
+  std::vector<double> due_in_s_;  ///< for each line: the time until its next targets are due
   bool has_targets_ = false;
 };
 

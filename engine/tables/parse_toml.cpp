@@ -7,8 +7,8 @@
 namespace yuragi::tables {
 namespace {
 
-/// Reads a document just closely enough to tell its keys from its values. An invalid document is misread only behind
-/// its first error, where the parser stops.
+/// Reads a document just closely enough to distinguish keys from values. An invalid document is misread only after its
+/// first error, where the parser stops.
 class LimitCheck {
  public:
   explicit LimitCheck(std::string_view text) : text_(text) {}
@@ -91,7 +91,7 @@ class LimitCheck {
     key_bytes_ = 0;
   }
 
-  /// Of the key, the bytes from `begin` on were read.
+  /// The bytes from `begin` on belong to the key.
   void check_key(std::size_t begin) {
     if (key_bytes_ == 0) key_begin_ = begin;
     key_bytes_ += at_ - begin;

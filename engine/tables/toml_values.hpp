@@ -14,8 +14,8 @@
 
 namespace yuragi::tables {
 
-/// Collects what is wrong with a file, a line for each mistake: `file:line:column: key: what is wrong; what is
-/// allowed`. Control characters of the file are shown as question marks.
+/// Collects the mistakes in a file, one line each: `file:line:column: key: what is wrong; what is allowed`. Control
+/// characters of the file are shown as question marks.
 class TomlMistakes {
  public:
   /// `source_name`: the file's name in the lines.
@@ -34,22 +34,22 @@ class TomlMistakes {
   std::string text_;
 };
 
-/// A TOML value as a parameter's value; nothing for dates, arrays and tables, which no parameter has.
+/// A TOML value as a parameter's value; nullopt for dates, arrays and tables, which no parameter has.
 std::optional<ParameterValue> parameter_value_of(const toml::node& node);
 
-/// The values of one table, except the keys in `aside`; `prefix` ("look.") stands before a key in mistakes. What is
-/// wrong goes to `mistakes`, and counts as left out.
+/// The values of one table, except the keys in `aside`; `prefix` ("look.") precedes a key in mistakes. Wrong values are
+/// reported to `mistakes`, and treated as missing.
 ParameterValues read_values(const toml::table& table, const std::string& prefix, std::span<const Parameter> parameters,
                             const std::set<std::string_view>& aside, TomlMistakes& mistakes);
 
 /// The `name` of an entry of a list: 1 to 64 bytes without control characters. `otherwise` if it is missing, or refused
-/// as a mistake. `prefix` ("scene.") stands before the key in mistakes.
+/// as a mistake. `prefix` ("scene.") precedes the key in mistakes.
 std::string read_name(const toml::table& entry, const std::string& prefix, std::string otherwise,
                       TomlMistakes& mistakes);
 
-/// The tables of a list, in order, by pointer: a copy of a TOML table loses its lines and columns. A mistake where
-/// `key` is no list of tables, or has more than `most`; then there are none. `path` ("output.window") stands in
-/// mistakes.
+/// The tables of a list, in order, by pointer: a copy of a TOML table loses its lines and columns. It is a mistake if
+/// `key` is not a list of tables, or has more than `most`; then the result is empty. `path` ("output.window") is the
+/// name in mistakes.
 std::vector<const toml::table*> entries_of(const toml::table& around, std::string_view key, const std::string& path,
                                            std::size_t most, TomlMistakes& mistakes);
 

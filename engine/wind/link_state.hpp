@@ -7,11 +7,11 @@
 
 namespace yuragi::wind {
 
-/// Does a sensor's device reply? The stream (pose.fbs) has the same in the same order.
+/// Whether a sensor's device replies. The stream (pose.fbs) has the same in the same order.
 enum class LinkState : std::uint8_t {
   kConnecting,  ///< looking for it; also between attempts
   kConnected,   ///< open, and the last exchange succeeded
-  kFinished,    ///< a recording that came to its end; nothing more will come
+  kFinished,    ///< a recording that has ended; no more readings follow
 };
 inline constexpr std::array<std::string_view, 3> kLinkStateNames = {"connecting", "connected", "finished"};
 

@@ -6,15 +6,15 @@
 
 namespace yuragi::wind {
 
-/// What the speed in a station's reading is.
+/// The meaning of the speed in a station's reading.
 enum class ReadingValue : std::uint8_t {
   kMean,     ///< the mean wind over a time
   kInstant,  ///< the instantaneous wind: frequencies above half the sampling rate are folded into it (aliasing)
   kMaximum,  ///< the strongest wind of a period: never used as the wind
-  kUnknown,  ///< not documented: judged from the readings, or else assumed_value() of the interval
+  kUnknown,  ///< not documented: judged from the readings, otherwise assumed_value() of the interval
 };
 
-/// Are such readings used as wind? Maxima are not.
+/// Returns true if such readings are used as wind. Maxima are not.
 constexpr bool makes_wind(ReadingValue value) noexcept {
   return value != ReadingValue::kMaximum;
 }
@@ -22,17 +22,16 @@ constexpr bool makes_wind(ReadingValue value) noexcept {
 /// The names of those that can be stated, in their order.
 inline constexpr std::array<std::string_view, 3> kReadingValueNames = {"mean", "instant", "maximum"};
 
-/// What a station's readings are used as: what is stated of them, or judged from them (turbulence::ValueVerdict), or
-/// assumed.
+/// The value as which a station's readings are used: stated, judged from them (turbulence::ValueVerdict), or assumed.
 struct TakenValue {
   ReadingValue value = ReadingValue::kUnknown;
   bool is_judged = false;
 };
 
-/// Returns what is assumed of a station whose value is unknown, by the interval between its readings: the assumption
-/// whose worst error is the smaller one. Means taken as instantaneous make a wind with a part of the variance,
-/// instantaneous wind taken as means a multiple of it: of four winds at the worst 1/2.3 and 2.7 times at 14 s, 1/4.0
-/// and 4.1 at 30 s, 1/7.1 and 4.9 at 60 s (engine/wind/README.md, "Instantaneous stations", and sampling_proof). Pure.
+/// Returns the assumed value of a station whose value is unknown, by the interval between its readings: the assumption
+/// with the smaller maximum error. Means treated as instantaneous give a fraction of the variance, instantaneous wind
+/// treated as means a multiple of it: for four winds at worst 1/2.3 and 2.7 times at 14 s, 1/4.0 and 4.1 at 30 s, 1/7.1
+/// and 4.9 at 60 s (engine/wind/README.md, "Instantaneous stations", and sampling_proof). Pure.
 inline constexpr double kAssumedInstantUpTo_s = 30.0;
 constexpr ReadingValue assumed_value(double interval_s) noexcept {
   return interval_s > kAssumedInstantUpTo_s ? ReadingValue::kMean : ReadingValue::kInstant;

@@ -13,7 +13,7 @@ namespace yuragi::wind {
 enum class SourceHealth : std::uint8_t {
   kSilent,  ///< has not spoken yet
   kLive,
-  kStale,  ///< silent for longer than its own measured interval explains, or what else is known of it
+  kStale,  ///< silent for longer than its measured interval, or other knowledge of it, explains
 };
 inline constexpr std::size_t kSourceHealthCount = 3;
 
@@ -21,7 +21,7 @@ struct SourceReport {
   SourceHealth health = SourceHealth::kSilent;
   double interval_s = 0.0;  ///< measured: between new readings; 0 before the second reading
   double age_s = 0.0;       ///< of its last reading
-  bool is_overdue = false;  ///< live, but not by its interval: its silence is explained otherwise
+  bool is_overdue = false;  ///< live, but beyond its interval: its silence is explained otherwise
   std::optional<Reading> last;
 };
 

@@ -8,19 +8,19 @@
 
 namespace yuragi::wind {
 
-/// What a weather station reports besides the horizontal wind, unchanged. nullopt: not reported. For the recording
-/// alone: no estimate and no animation uses it.
+/// The other quantities of a weather station besides the horizontal wind, unchanged. nullopt: not reported. For the
+/// recording alone: no estimate and no animation uses it.
 struct StationQuantities {
   Instant time;                              ///< when it arrived
   std::optional<double> vertical_speed_m_s;  ///< upward positive
   std::optional<double> air_temperature_c;   ///< degrees Celsius
-  std::optional<double> pressure_hpa;        ///< at the station or reduced to sea level, as the station is set
+  std::optional<double> pressure_hpa;  ///< at the station or reduced to sea level, depending on the station's setting
   std::optional<double> relative_humidity_percent;
-  std::optional<double> rain_total_mm;  ///< the station's own counter, which it may set back
+  std::optional<double> rain_total_mm;  ///< the station's own counter, which it can reset
   std::optional<double> rain_rate_mm_h;
 };
 
-/// One of the quantities: its name in recordings and CSV, and the closed interval that contains what it can be.
+/// One of the quantities: its name in recordings and CSV, and the closed interval of its values.
 struct StationQuantity {
   std::string_view name;
   std::optional<double> StationQuantities::*value;
@@ -39,8 +39,8 @@ inline constexpr std::array<StationQuantity, 6> kStationQuantities = {{
     {"rain_rate_mm_h", &StationQuantities::rain_rate_mm_h, 0.0, 3'000.0},
 }};
 
-/// The quantities without those that are not finite or outside their range; nothing where none is left. Thread-safe and
-/// realtime-safe: yes.
+/// The quantities that are finite and within their range; nullopt if there are none. Thread-safe and realtime-safe:
+/// yes.
 std::optional<StationQuantities> plausible_part(const StationQuantities& quantities) noexcept;
 
 }  // namespace yuragi::wind

@@ -4,11 +4,10 @@
 
 namespace yuragi::wind {
 
-/// The direction of the wind that cameras with a wind_angle keep their angle to: calm enough to look from. It follows
-/// the mean direction of the last 10 minutes, as a vector mean, and stays where it is until that is more than 10
-/// degrees away; then it turns toward it by at most 0.5 degrees a second. It is held in less than 1 m/s and while no
-/// sensor is live. Only the first live wind, if it comes within 10 s, is taken at once: a film begins at the right
-/// side.
+/// The direction of the wind for cameras with a wind_angle, which changes slowly. It follows the mean direction of the
+/// last 10 minutes, as a vector mean: it does not change until that is more than 10 degrees away; then it turns toward
+/// it by at most 0.5 degrees a second. It is held in less than 1 m/s and while no sensor is live. Only the first live
+/// wind, if it comes within 10 s, is used at once, so that a film begins at the right side.
 ///
 /// Pure: time is a parameter; the same steps give the same bits. Always finite. Thread-safe: no. Realtime-safe: yes.
 class ViewWind {
@@ -19,10 +18,10 @@ class ViewWind {
   static constexpr double kMinSpeed_m_s = 1.0;
   static constexpr double kStart_s = 10.0;
 
-  /// `from_deg`: where the wind comes from as long as no sensor is live; anything not finite counts as north.
+  /// `from_deg`: the wind direction as long as no sensor is live; a value that is not finite counts as north.
   explicit ViewWind(double from_deg) noexcept;
 
-  /// Advances by dt_s. Not live: the wind comes from no sensor.
+  /// Advances by dt_s. `is_live`: the wind comes from a sensor.
   void advance(double dt_s, Vector wind, bool is_live) noexcept;
 
   /// Where the wind comes from, degrees clockwise from north, [0, 360).
@@ -31,7 +30,7 @@ class ViewWind {
  private:
   double from_deg_;
   Vector mean_;
-  double live_s_ = 0.0;  // over which the mean goes, at most kMean_s
+  double live_s_ = 0.0;  // duration of the mean, at most kMean_s
   double age_s_ = 0.0;   // at most a little above kStart_s
   bool is_turning_ = false;
 };

@@ -18,7 +18,7 @@ bool is_plausible(const Reading& reading) noexcept {
   return std::isfinite(*reading.direction_deg) && *reading.direction_deg >= 0.0 && *reading.direction_deg < 360.0;
 }
 
-bool says_the_same(const Reading& a, const Reading& b) noexcept {
+bool has_same_values(const Reading& a, const Reading& b) noexcept {
   return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg && a.gust_m_s == b.gust_m_s;
 }
 

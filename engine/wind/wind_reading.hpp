@@ -11,7 +11,7 @@ namespace yuragi::wind {
 enum class ReadingQuality : std::uint8_t {
   kGood,       ///< measured, without a flag by the device
   kUncertain,  ///< measured, but the device flags it (low battery, partial data)
-  kSimulated,  ///< made by a simulation: never to be taken for the real wind
+  kSimulated,  ///< made by a simulation: must not be treated as real wind
 };
 
 /// One reading of a sensor, decoded, in SI units, before calibration. Finite and physical by the time it is published.
@@ -19,11 +19,11 @@ struct Reading {
   Instant time;            ///< when it arrived
   double speed_m_s = 0.0;  ///< at least 0
   std::optional<double>
-      direction_deg;               ///< where the wind comes *from*, clockwise from north, [0, 360); empty: not known
-  std::optional<double> gust_m_s;  ///< the strongest of the device's own recent past
+      direction_deg;               ///< where the wind comes *from*, clockwise from north, [0, 360); nullopt: unknown
+  std::optional<double> gust_m_s;  ///< maximum of the device's own recent past
   ReadingQuality quality = ReadingQuality::kGood;
   /// A repetition of the reading before, which still holds (a paused recording): its source is not silent, but the
-  /// repetition is not fitted to, checked or recorded.
+  /// repetition is not used for fits, checked or recorded.
   bool is_held = false;
 };
 
@@ -31,10 +31,10 @@ struct Reading {
 /// WMO Commission for Climatology 2010).
 inline constexpr double kMaxPlausibleSpeed_m_s = 120.0;
 
-/// Is everything in the reading finite and within physical range?
+/// Returns true if everything in the reading is finite and within its physical range.
 bool is_plausible(const Reading& reading) noexcept;
 
 /// Have both the same speed, direction and gust, bit for bit?
-bool says_the_same(const Reading& a, const Reading& b) noexcept;
+bool has_same_values(const Reading& a, const Reading& b) noexcept;
 
 }  // namespace yuragi::wind

@@ -7,10 +7,10 @@
 
 namespace yuragi::wind {
 
-/// Where the wind of a moment comes from.
+/// The source of the wind at a moment.
 enum class Source : std::uint8_t {
   kDefault,   ///< no live sensor: the installation's default synthetic wind
-  kHandover,  ///< on the way from one to the other
+  kHandover,  ///< changing from one to the other
   kLive,      ///< a sensor
 };
 
@@ -20,12 +20,12 @@ struct State {
   Vector wind;
   Source source = Source::kDefault;
   double live_weight = 0.0;    ///< 0: all default wind; 1: all sensor
-  double reading_age_s = 0.0;  ///< of the newest reading that took part; 0 where there was none
-  /// This is the wind so far upwind of the middle of the scenes (below 0: downwind): at their windward edge, or where
-  /// the sensor's configured position is. What blows there now crosses the scenes.
+  double reading_age_s = 0.0;  ///< of the newest reading that was used; 0 if there was none
+  /// The distance of the place of this wind upwind of the middle of the scenes (negative: downwind): their windward
+  /// edge, or the sensor's configured position. Its gusts then cross the scenes.
   double upwind_m = 0.0;
-  double to_middle_s = 0.0;  ///< how long a gust takes from there to the middle; 0 where it has passed it already
-  /// That place is the sensors' configured position; otherwise it is the windward edge.
+  double to_middle_s = 0.0;  ///< the time of a gust from there to the middle; 0 if it has already passed it
+  /// true: that place is the sensors' configured position; false: it is the windward edge
   bool is_place_configured = false;
 };
 

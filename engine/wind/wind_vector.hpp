@@ -2,8 +2,8 @@
 
 namespace yuragi::wind {
 
-/// Horizontal wind toward which the air moves: u east, v north, m/s. Averages and blends are made of these, never of
-/// degrees, so that none of them crosses 360.
+/// Horizontal wind toward which the air moves: u east, v north, m/s. Averages and blends use these, never degrees, so
+/// that there is no problem at 360.
 struct Vector {
   double u_m_s = 0.0;
   double v_m_s = 0.0;

@@ -8,7 +8,7 @@
 
 namespace yuragi::wire {
 
-/// Texts end up in terminals and logs.
+/// Because texts are shown in terminals and logs.
 bool read_text(const flatbuffers::String* from, std::string& to) {
   to.clear();
   if (from == nullptr) return true;
@@ -36,7 +36,7 @@ bool read(const fb::Wind* from, wind::State& to) {
          is_within(to.reading_age_s, 0.0, kMaxDuration_s);
 }
 
-/// A server that does not know of it sends none: then the wind is in the middle.
+/// An older server does not send it: then the wind is in the middle.
 bool read(const fb::WindPlace* from, wind::State& to) {
   if (from == nullptr) return true;
   to.upwind_m = static_cast<double>(from->upwind_m());
@@ -80,7 +80,7 @@ bool read(const fb::Scenes& from, Scenes& to) {
   const std::size_t count = from.scenes() == nullptr ? 0 : from.scenes()->size();
   if (count > kMaxScenes) return false;
   std::size_t room = 0;
-  std::size_t pixels = 0;  // scenes may share a picture: few bytes must not ask for much memory
+  std::size_t pixels = 0;  // scenes can share a picture: few bytes must not need much memory
   for (std::size_t i = 0; i < count; ++i) {
     if (!read_scene(*from.scenes()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.scenes.emplace_back()))
       return false;
@@ -168,7 +168,7 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
          read(from.raw_direction_deg(), to.raw_direction_deg) && read_quantities(from, to);
 }
 
-/// A server that does not know of it sends none: then nothing is at work.
+/// An older server does not send it: then nothing is active.
 bool read(const fb::Shaping* from, Shaping& to) {
   if (from == nullptr) return true;
   constexpr double kMaxGain = 1e3;
@@ -186,7 +186,7 @@ bool read(const fb::Shaping* from, Shaping& to) {
          take(from->openness(), 1.0, to.openness) && read_text(from->text(), to.text);
 }
 
-/// A server that does not know of it sends none.
+/// An older server does not send it.
 bool read(const fb::Lateness* from, std::optional<Lateness>& to) {
   if (from == nullptr) return true;
   to = Lateness{from->p50_s(), from->p99_s(), from->max_s()};
@@ -194,7 +194,7 @@ bool read(const fb::Lateness* from, std::optional<Lateness>& to) {
          is_within(to->max_s, 0.0, kMaxDuration_s);
 }
 
-/// A server that has no scenes, or does not tell, sends none.
+/// A server without scenes, or an older one, does not send it.
 bool read(const fb::Animation* from, std::optional<AnimationStatus>& to) {
   if (from == nullptr) return true;
   to = AnimationStatus{.running_s = from->running_s(), .period_s = from->period_s(), .tick_s = from->tick_s()};
@@ -209,7 +209,7 @@ bool read(const fb::Animation* from, std::optional<AnimationStatus>& to) {
          is_within(to->tick_s, 0.0, kMaxDuration_s);
 }
 
-/// A server that records nothing, or does not tell, sends none.
+/// A server that does not record, or an older one, does not send it.
 bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
   if (from == nullptr) return true;
   if (from->state() > fb::RecorderState_MAX) return false;
@@ -222,7 +222,7 @@ bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
   return read_text(from->error(), to->error) && read_text(from->clock_doubt(), to->clock_doubt);
 }
 
-/// Never refuses: what is out of range is brought into it, so that a picture is shown.
+/// Never refuses: values are limited to their range, so that a picture is shown.
 void read(const fb::Look* from, look::Look& to) {
   if (from == nullptr) return;
   look::Look look{.sun = static_cast<look::SunChoice>(from->sun()),
@@ -406,7 +406,7 @@ Result<Message, Error> read_body(const Table* table) {
   return message;
 }
 
-/// Deeper and more numerous than anything the schema can hold within the limits.
+/// Above the maximum depth and number of tables of a valid message.
 flatbuffers::Verifier::Options verifier_options() {
   flatbuffers::Verifier::Options options;
   options.max_depth = 16;
@@ -417,12 +417,12 @@ flatbuffers::Verifier::Options verifier_options() {
 }  // namespace
 
 Result<Message, Error> decode(std::span<const std::uint8_t> bytes) {
-  // Room for the root's offset and the identifier, which FlatBuffers 2.0 reads before it looks at the length.
+  // FlatBuffers 2.0 reads the root's offset and the identifier before it checks the length.
   if (bytes.size() < 2 * sizeof(flatbuffers::uoffset_t)) return Error::kNotVerified;
   if (bytes.size() > kMaxServerMessageBytes) return Error::kTooLong;
 
-  // Alignment in a size-prefixed buffer counts from the prefix. A copy that has one, in aligned memory, can be verified
-  // and read in place, wherever `bytes` came to lie.
+  // Alignment in a size-prefixed buffer counts from the prefix. An aligned copy with a prefix can be verified and read
+  // in place, for any alignment of `bytes`.
   const auto length = static_cast<flatbuffers::uoffset_t>(bytes.size());
   const auto buffer = std::make_unique_for_overwrite<std::uint8_t[]>(kSizePrefixBytes + bytes.size());
   std::memcpy(buffer.get(), &length, sizeof length);

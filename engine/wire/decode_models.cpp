@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numbers>
 
-// Skeletons and poses. Their arrays come without padding, and are padded here.
+// Skeletons and poses. Their arrays have no padding in a message; it is added here.
 
 namespace yuragi::wire {
 namespace {
@@ -21,7 +21,7 @@ constexpr float kMaxBendStep_rad = 1e-3f;
 constexpr float kMaxWayStep_m = 1.0f;
 constexpr float kMaxSlopeStep = 1.0f;
 constexpr float kUnitTolerance = 1e-2f;
-constexpr float kMaxUnitComponent = 2.0f;  // before is_unit() looks at all three
+constexpr float kMaxUnitComponent = 2.0f;  // checked before is_unit() uses all three
 constexpr std::size_t kRampBytes = std::size_t{4} * 256;
 
 template <class T>
@@ -29,7 +29,7 @@ std::size_t size_of(const flatbuffers::Vector<T>* vector) {
   return vector == nullptr ? 0 : vector->size();
 }
 
-/// How the values of an array stand before and after decoding: `rows` runs of `columns`, each padded to `stride`.
+/// The layout of an array's values before and after decoding: `rows` runs of `columns`, each padded to `stride`.
 struct Layout {
   std::size_t columns;
   std::size_t rows = 1;
@@ -66,7 +66,7 @@ bool read_lengths(const flatbuffers::Vector<float>* from, const Layout& layout, 
          std::all_of(to.begin(), to.end(), [](float value) { return value >= 0.0f; });
 }
 
-/// Indices below `limit`; the padding's is 0, which has to be there too.
+/// Indices below `limit`; padding is 0, which must exist, too.
 bool read_indices(const flatbuffers::Vector<std::uint32_t>* from, const Layout& layout, std::size_t limit,
                   std::vector<std::uint32_t>& to) {
   return read_array(from, layout, to, [](std::uint32_t value) { return value; }) &&
@@ -82,7 +82,7 @@ bool is_unit(float x, float y, float z) {
   return std::abs(x * x + y * y + z * z - 1.0f) <= kUnitTolerance;
 }
 
-/// Of `rest` and `curl` of every strand: are they unit vectors, one across the other?
+/// Returns true if `rest` and `curl` of every strand are perpendicular unit vectors.
 bool is_frame(const pose::StrandSkeleton& s) {
   for (std::size_t i = 0; i < s.strand_count; ++i) {
     const float across = s.rest_x[i] * s.curl_x[i] + s.rest_y[i] * s.curl_y[i] + s.rest_z[i] * s.curl_z[i];
@@ -114,7 +114,7 @@ bool read(const fb::StrandSkeleton& from, pose::StrandSkeleton& to) {
          read_lengths(from.link_length_m(), all, to.link_length_m) && is_frame(to);
 }
 
-/// Has a grid room for no more points than are allowed, padding included?
+/// Returns true if a grid has at most the allowed number of points, including padding.
 bool is_grid(std::size_t columns, std::size_t rows, std::size_t stride) {
   return columns <= kMaxStrands && rows <= kMaxStrands && stride * rows <= kMaxStrands;
 }
@@ -129,7 +129,7 @@ bool read(const fb::GridSkeleton& from, pose::GridSkeleton& to) {
          read_numbers(from.rest_z_m(), all, kMaxExtent_m, to.rest_z_m);
 }
 
-/// A level that grows on the levels before it, which have been read.
+/// Reads a level that grows on the previous levels, which were already read.
 bool read(const fb::TreeLevel& from, std::span<const pose::TreeLevel> before, pose::TreeLevel& to) {
   if (from.strands() == nullptr || !read(*from.strands(), to.strands)) return false;
   to.is_turned_by_block = from.is_turned_by_block();
@@ -164,7 +164,7 @@ bool read(const fb::TreeSkeleton& from, pose::TreeSkeleton& to) {
   // A newer server may know more colours.
   if (from.foliage() <= fb::FoliageColor_MAX) to.foliage = static_cast<pose::FoliageColor>(from.foliage());
   to.levels.reserve(count);
-  std::size_t room = 0;  // the levels may share arrays: few bytes must not ask for much memory
+  std::size_t room = 0;  // the levels can share arrays: few bytes must not need much memory
   for (std::size_t i = 0; i < count; ++i) {
     pose::TreeLevel level;
     if (!read(*from.levels()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.levels, level)) return false;
@@ -272,7 +272,7 @@ std::optional<look::Color> color_of(flatbuffers::Optional<std::uint32_t> rgb) {
   return look::Color{part(16), part(8), part(0)};
 }
 
-/// Returns a picture whose size fits its pixels, or none.
+/// Returns a picture whose size matches its pixels, or null.
 bool read(const fb::Cloth& from, look::ClothLook& to) {
   to.color = color_of(from.color());
   to.color_2 = color_of(from.color_2());
@@ -323,7 +323,7 @@ bool read_pose(const fb::ScenePose& from, pose::Pose& pose, float& opacity) {
       return read_kind<pose::SurfacePose>(from.pose_as_SurfacePose(), pose);
     case fb::Pose_NONE:
       pose.emplace<pose::StrandPose>();
-      return opacity == 0.0f;  // only what is hidden may be left out
+      return opacity == 0.0f;  // only a hidden scene's pose can be omitted
   }
   pose.emplace<pose::StrandPose>();  // of a newer server
   return true;

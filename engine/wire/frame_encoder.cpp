@@ -12,7 +12,7 @@
 
 namespace yuragi::wire {
 
-// The quantised numbers go straight into the buffer, which FlatBuffers defines as little-endian.
+// The quantised numbers are written directly into the buffer, which FlatBuffers defines as little-endian.
 static_assert(std::endian::native == std::endian::little);
 
 struct FrameEncoder::Builder {
@@ -28,7 +28,7 @@ struct FrameEncoder::Builder {
     return vector;
   }
 
-  /// `rows` runs of `columns` values, which stand `stride` apart.
+  /// `rows` runs of `columns` values, which are `stride` apart.
   Units add_ways(std::span<const float> way_m, float step_m, std::size_t columns, std::size_t rows,
                  std::size_t stride) {
     std::int16_t* values = nullptr;
@@ -112,7 +112,7 @@ struct FrameEncoder::Builder {
 static_assert(fb::Pose_MAX == std::variant_size_v<pose::Pose>, "the kinds of skeleton.hpp, in the same order");
 
 FrameEncoder::FrameEncoder() : builder_(std::make_unique<Builder>()) {
-  // A zero takes as much room as any other number, so that no later frame is longer than the first.
+  // A zero takes as much space as any other number, so that no later frame is longer than the first.
   builder_->buffer.ForceDefaults(true);
 }
 
@@ -136,7 +136,7 @@ std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info,
 
   const fb::Wind wind = to_schema(info.wind);
   const fb::WindPlace place = place_to_schema(info.wind);
-  // Not a number where there is none: frames of the same scenes have one size, so that none allocates.
+  // Not a number if there is none: frames of the same scenes have one size, so that none allocates.
   const double view_wind_from_deg = info.view_wind_from_deg.value_or(std::numeric_limits<double>::quiet_NaN());
   const auto frame = fb::CreateFrame(buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector,
                                      &place, view_wind_from_deg);

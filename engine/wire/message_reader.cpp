@@ -5,11 +5,11 @@ namespace yuragi::wire {
 MessageReader::MessageReader(std::size_t max_message_bytes) : max_message_bytes_(max_message_bytes) {}
 
 void MessageReader::feed(std::span<const std::uint8_t> bytes) {
-  // A whole message of the greatest length already waits: the caller takes none out.
+  // A whole message of the maximum length is already waiting: the caller does not take messages.
   if (buffered_bytes() >= kSizePrefixBytes + max_message_bytes_) broken_ = true;
   if (broken_) return;
 
-  // Close the gap that taken messages left, so that the buffer stays as long as what waits in it.
+  // Removes the gap of taken messages, so that the buffer is only as long as the waiting bytes.
   if (consumed_ > 0) {
     buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(consumed_));
     consumed_ = 0;

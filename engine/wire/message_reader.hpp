@@ -15,12 +15,12 @@ namespace yuragi::wire {
 ///     reader.feed(received);
 ///     while (auto message = reader.next()) { if (!*message) ...; else use(**message); }
 ///
-/// A size prefix above the limit ends the stream: where the next message begins can no longer be known, so next()
-/// returns kTooLong from then on. Any other bad message is reported once and skipped.
+/// A size prefix above the limit ends the stream: the begin of the next message is then unknown, so next() returns
+/// kTooLong from then on. Any other bad message is reported once and skipped.
 ///
-/// Memory: what was received of one message, at most the limit, plus one feed. A prefix alone reserves nothing, and a
-/// caller who feeds on without calling next() is cut off with kTooLong.
-/// Thread-safe: no. Realtime-safe: no; decoding allocates.
+/// Memory: the received part of one message, at most the limit, plus one feed. A prefix alone reserves no memory, and a
+/// caller who continues to feed without calling next() gets kTooLong. Thread-safe: no. Realtime-safe: no; decoding
+/// allocates.
 class MessageReader {
  public:
   /// `max_message_bytes` bounds one message, without its size prefix.
@@ -29,7 +29,7 @@ class MessageReader {
   /// Takes the next bytes of the stream, any number of them. They are copied.
   void feed(std::span<const std::uint8_t> bytes);
 
-  /// The next whole message, or why it is not one; nothing where more bytes are needed.
+  /// The next whole message, or the error in it; nullopt if more bytes are needed.
   std::optional<Result<Message, Error>> next();
 
   /// Bytes that wait for the rest of their message.

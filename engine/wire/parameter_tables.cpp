@@ -17,7 +17,7 @@ Text add_optional_text(Builder& builder, const std::optional<std::string>& text)
   return text ? add_text(builder, *text) : Text();
 }
 
-/// A vector of the first `most` of `items`, each of which `add` adds.
+/// A vector of the first `most` of `items`, each added by `add`.
 template <class Item, class Add>
 auto add_list(Builder& builder, const std::vector<Item>& items, std::size_t most, const Add& add) {
   std::vector<decltype(add(items.front()))> added;
@@ -70,14 +70,14 @@ bool read_list(const flatbuffers::Vector<From>* from, std::size_t most, std::vec
   return true;
 }
 
-/// Nothing where there is none; false where it is no number.
+/// Nullopt if there is none; returns false if it is not a number.
 bool read_limit(const flatbuffers::Optional<double>& from, std::optional<double>& to) {
   if (from.has_value()) to = *from;
   return !to || std::isfinite(*to);
 }
 
 bool read_parameter(const fb::Parameter& from, ParameterState& to) {
-  // What a newer server calls otherwise is shown, and not set.
+  // An unknown kind of a newer server is shown, and cannot be set.
   const bool is_known = from.kind() <= fb::ParameterKind_MAX && from.change() <= fb::ParameterChange_MAX;
   to.kind = is_known ? static_cast<ParameterKind>(from.kind()) : ParameterKind::kText;
   to.change = is_known ? static_cast<KeyChange>(from.change()) : KeyChange::kTakesRestart;

@@ -10,8 +10,8 @@
 
 namespace yuragi::wire {
 
-// The values of [look] and of the scenes, as a client sees and sets them. A value is a text, as it stands in the
-// configuration but without quotes: "0.4", "12", "true", "evening".
+// The values of [look] and of the scenes, as a client sees and sets them. A value is a text, as in the configuration
+// but without quotes: "0.4", "12", "true", "evening".
 
 // The limits that decode() accepts; encoders leave out more.
 inline constexpr std::size_t kMaxParameterEdits = 64;
@@ -21,39 +21,39 @@ inline constexpr std::size_t kMaxParameterChoices = 64;
 /// A value to set.
 struct ParameterEdit {
   std::string key;
-  std::optional<std::string> value;  ///< nothing: back to the configuration's
+  std::optional<std::string> value;  ///< nullopt: back to the configuration's
 };
 
-/// Sets values of [look] or of one scene, until the configuration is read again or the server is started again.
+/// Sets values of [look] or of one scene, until the configuration is read again or the server restarts.
 struct ParameterCommand {
   std::string scene = {};                 ///< its name; empty: [look]
-  std::vector<ParameterEdit> edits = {};  ///< all of them, or none where one has a mistake
-  bool describe = false;                  ///< the reply lists all parameters, with their values as they are then
-  std::uint32_t number = 0;               ///< the client's own, which comes back in the reply
+  std::vector<ParameterEdit> edits = {};  ///< all of them, or none if one has a mistake
+  bool describe = false;                  ///< the reply lists all parameters, with their new values
+  std::uint32_t number = 0;               ///< chosen by the client, and returned in the reply
 };
 
 /// What a value is.
 enum class ParameterKind : std::uint8_t { kNumber, kWholeNumber, kYesNo, kText };
 
-/// A parameter, described by itself, and its value.
+/// A parameter with its description and value.
 struct ParameterState {
   std::string name;
   std::string unit = {};  ///< "m/s"; empty: none
   ParameterKind kind = ParameterKind::kNumber;
-  std::optional<double> min = std::nullopt;  ///< numbers only; nothing: without a limit
+  std::optional<double> min = std::nullopt;  ///< numbers only; nullopt: no limit
   std::optional<double> max = std::nullopt;
   std::vector<std::string> choices = {};  ///< texts only; empty: any text
   std::string help = {};
-  std::string left_out = {};                                ///< what it means that there is no value
+  std::string left_out = {};                                ///< meaning of a missing value
   std::optional<std::string> default_value = std::nullopt;  ///< nothing: left out
   std::optional<std::string> value = std::nullopt;          ///< now
   std::optional<std::string> configured = std::nullopt;     ///< by the configuration
-  /// What a new value does. A parameter with a kind or a change that this build does not know is decoded as a text that
-  /// takes a restart.
+  /// Effect of a new value. A parameter with a kind or a change that this build does not know is decoded as a text that
+  /// needs a restart.
   KeyChange change = KeyChange::kAtOnce;
 };
 
-/// Those of [look], or of a scene.
+/// The parameters of [look], or of a scene.
 struct ParameterGroup {
   std::string scene;  ///< its name; empty: [look]
   std::string kind;   ///< of the scene
@@ -63,7 +63,7 @@ struct ParameterGroup {
 struct ParameterReport {
   std::uint32_t number = 0;                 ///< of the command
   std::string refusal = {};                 ///< why this client may set no values; empty: it may
-  std::vector<ParameterGroup> groups = {};  ///< [look], then the scenes in order; none unless they were asked for
+  std::vector<ParameterGroup> groups = {};  ///< [look], then the scenes in order; empty unless requested
 };
 
 }  // namespace yuragi::wire

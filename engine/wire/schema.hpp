@@ -7,7 +7,7 @@
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/parameters.hpp"
 
-// For the .cpp files of this folder only: what flatc makes of pose.fbs.
+// For the .cpp files of this folder only: the code that flatc generates from pose.fbs.
 
 namespace yuragi::wire {
 
@@ -24,7 +24,7 @@ inline fb::WindPlace place_to_schema(const wind::State& state) {
                        state.is_place_configured);
 }
 
-/// `text`, cut to the longest that decode() takes, at the start of a UTF-8 character.
+/// `text`, cut to the maximum length that decode() accepts, at the start of a UTF-8 character.
 flatbuffers::Offset<flatbuffers::String> add_text(flatbuffers::FlatBufferBuilder& builder, std::string_view text);
 
 flatbuffers::Offset<fb::ParameterCommand> add_parameters(flatbuffers::FlatBufferBuilder& builder,

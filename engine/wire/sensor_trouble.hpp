@@ -6,7 +6,7 @@
 
 namespace yuragi::wire {
 
-/// What is wrong with a sensor and what to do about it, to be read behind its name: "is stale: no reading for 5 min";
+/// What is wrong with a sensor and what to do about it, for printing after its name: "is stale: no reading for 5 min";
 /// "sends no direction: none for 3 min of wind". Empty: nothing. Pure.
 std::string trouble_of(const SensorStatus& sensor);
 

@@ -17,7 +17,7 @@ Numbers every_so_many(std::size_t count, std::size_t every, bool keeps_last) {
   return kept;
 }
 
-/// The numbers of the points in kept rows and columns, where a row has room for `stride`.
+/// The numbers of the points in kept rows and columns; a row has room for `stride`.
 Numbers points_of(const Numbers& rows, const Numbers& columns, std::size_t stride) {
   Numbers points;
   points.reserve(rows.size() * columns.size());
@@ -27,7 +27,7 @@ Numbers points_of(const Numbers& rows, const Numbers& columns, std::size_t strid
   return points;
 }
 
-/// The kept values, in a vector of `room` elements, the rest of them zeros.
+/// The kept values, in a vector of `room` elements, padded with zeros.
 template <class T>
 void keep(std::vector<T>& values, const Numbers& kept, std::size_t room) {
   std::vector<T> left(room);
@@ -36,7 +36,7 @@ void keep(std::vector<T>& values, const Numbers& kept, std::size_t room) {
 }
 
 void keep_strands(pose::StrandSkeleton& strands, const Numbers& kept, std::size_t every) {
-  // Every so many-th strand of a row is also every so many-th of all where the rows are whole multiples of it.
+  // Taking every n-th strand of a row equals every n-th overall if the rows are whole multiples of n.
   strands.columns = strands.columns % every == 0 ? strands.columns / every : 0;
   strands.strand_count = kept.size();
   for (auto* values :
@@ -78,7 +78,7 @@ Thinner::Kept Thinner::thin(pose::GridSkeleton& grid, std::size_t every) const {
 Thinner::Kept Thinner::thin(pose::TreeSkeleton& tree, std::size_t every) const {
   Kept kept;
   kept.of.resize(tree.levels.size());
-  // From the leaves down: a strand stays for its own sake, or since one that stays grows on it.
+  // From the leaves down: a strand is kept by itself, or because a kept one grows on it.
   std::vector<std::vector<bool>> stays;
   for (const pose::TreeLevel& level : tree.levels) {
     kept.count_before.push_back(level.strands.strand_count);
@@ -108,7 +108,7 @@ Thinner::Kept Thinner::thin(pose::TreeSkeleton& tree, std::size_t every) const {
       const auto place = std::ranges::lower_bound(parents, level.parent[i]);
       level.parent[i] = static_cast<std::uint32_t>(place - parents.begin());
     }
-    // Blocks of 16 are no longer what they were.
+    // The blocks of 16 have changed.
     level.is_turned_by_block = level.is_turned_by_block && is_whole;
   }
   return kept;

@@ -8,11 +8,11 @@
 
 namespace yuragi::wire {
 
-/// Thins scenes and their frames out, for clients with little bandwidth: of the scenes those that are wanted, of
-/// strands every so many-th, of a cloth or a surface every so many-th column and row.
+/// Thins scenes and their frames out, for clients with little bandwidth: only the requested scenes, every n-th strand,
+/// and every n-th column and row of a cloth or a surface.
 ///
-/// What is left is whole. Strands on which a kept one grows are kept. Edges of a cloth and an open surface are kept,
-/// and of each ring of a closed one at least three points. Strands on a grid remain on one where `every` divides its
+/// The result is consistent. Strands on which a kept one grows are kept. Edges of a cloth and an open surface are kept,
+/// and of each ring of a closed one at least three points. Strands on a grid remain on one if `every` divides its
 /// columns; otherwise they are on none. Leaves that were turned by blocks are each turned with the link that they grow
 /// from. The numbers of a frame are copied, not rounded again. Pure. Thread-safe: yes.
 class Thinner {
@@ -21,16 +21,16 @@ class Thinner {
 
   const Scenes& scenes() const noexcept { return scenes_; }
 
-  /// `message`: what FrameEncoder made of poses of the scenes that the constructor was given. The same for scenes();
-  /// both with their size prefix. A pose of another size is left out, as that of a hidden scene is.
+  /// `message`: FrameEncoder's output for the scenes of the constructor. The same for scenes(); both with their size
+  /// prefix. A pose of another size is omitted, like that of a hidden scene.
   Bytes frame(std::span<const std::uint8_t> message) const;
 
  private:
-  /// Which values of a scene's arrays are kept, in the message's order, without padding.
+  /// The kept values of a scene's arrays, in the message's order, without padding.
   struct Kept {
     std::size_t scene = 0;                            ///< its number among all
     std::vector<std::vector<std::uint32_t>> of = {};  ///< one list a level of a tree; otherwise one
-    std::vector<std::size_t> count_before = {};       ///< how many there were, list by list
+    std::vector<std::size_t> count_before = {};       ///< the numbers before, list by list
     std::vector<std::uint32_t> rows = {};             ///< of a surface
     std::size_t rows_before = 0;
     std::uint32_t columns = 0;  ///< of a cloth, afterwards

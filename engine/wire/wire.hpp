@@ -28,15 +28,15 @@
 
 // The stream's messages as plain values, and their FlatBuffers form (pose.fbs, which is the public description).
 //
-// Encoders write a finished, size-prefixed buffer. Decoders take the bytes behind the size prefix, run the FlatBuffers
-// verifier and then check what the verifier cannot (lengths that must agree, finite numbers); what they return is safe.
+// Encoders write a finished, size-prefixed buffer. Decoders take the bytes after the size prefix, run the FlatBuffers
+// verifier and then check further conditions (matching lengths, finite numbers); their results are safe.
 
 namespace yuragi::wire {
 
 inline constexpr std::uint32_t kProtocol = 1;
 inline constexpr std::size_t kSizePrefixBytes = 4;
-inline constexpr std::size_t kMaxServerMessageBytes = 256u << 20;  ///< of what a client reads
-inline constexpr std::size_t kMaxClientMessageBytes = 4096;        ///< of what the server reads
+inline constexpr std::size_t kMaxServerMessageBytes = 256u << 20;  ///< for a client that reads
+inline constexpr std::size_t kMaxClientMessageBytes = 4096;        ///< for the server that reads
 inline constexpr std::uint16_t kDefaultPort = 7410;
 
 // The limits that decode() accepts; pose.fbs documents them for other clients.
@@ -53,7 +53,7 @@ inline constexpr std::size_t kMaxRefusalReasons = 64;
 inline constexpr std::size_t kMaxQuantities = 16;  ///< of a sensor
 inline constexpr std::size_t kMaxTroubles = 16;
 inline constexpr double kMaxFade_s = 3600.0;
-inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a ReloadReport; encoders leave out more
+inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a ReloadReport; encoders omit further ones
 inline constexpr std::uint32_t kMaxSteps = 1'000'000;
 inline constexpr double kMinPlayRate = 0.01;
 inline constexpr double kMaxPlayRate = 1000.0;
@@ -66,18 +66,18 @@ struct Hello {
   std::string software;
   double tick_rate_hz = 0.0;
   std::optional<std::string> refused = std::nullopt;   ///< why the server closes the connection behind this message
-  std::optional<double> wind_from_deg = std::nullopt;  ///< where the wind comes from while no sensor is live, 0 to 360
+  std::optional<double> wind_from_deg = std::nullopt;  ///< direction of the wind while no sensor is live, 0 to 360
   bool takes_display = false;                          ///< the server takes Display
 };
 
 /// Why a client of this build cannot use the server, for a person, with the server as subject: "speaks protocol 3, this
-/// program protocol 1: update this program". Nothing where both speak the same.
+/// program protocol 1: update this program". Nullopt if the protocols are the same.
 std::optional<std::string> protocol_mismatch(const Hello& hello);
 
-/// Which part of the poses a client wants (Subscribe in pose.fbs; thinner.hpp).
+/// The part of the poses that a client requests (Subscribe in pose.fbs; thinner.hpp).
 struct Thinning {
-  std::vector<std::string> scenes = {};  ///< by their names; none: all
-  std::uint32_t every = 1;               ///< of strands, columns and rows every so many-th, 1 to kMaxEvery
+  std::vector<std::string> scenes = {};  ///< by their names; empty: all
+  std::uint32_t every = 1;               ///< every n-th of strands, columns and rows, 1 to kMaxEvery
 
   bool is_all() const { return scenes.empty() && every == 1; }
   friend bool operator==(const Thinning&, const Thinning&) = default;
@@ -89,14 +89,14 @@ struct Subscribe {
   bool sensors = false;
   std::string client;
   bool raw = false;               ///< RawTrace
-  std::string raw_sensor = {};    ///< of this one only; empty: of every sensor
-  bool takes_new_scenes = false;  ///< Scenes may come again; otherwise it is let go when the scenes change
+  std::string raw_sensor = {};    ///< of this sensor only; empty: of every sensor
+  bool takes_new_scenes = false;  ///< accepts Scenes again; otherwise disconnected when the scenes change
   Thinning thinning = {};
-  double rate_hz = 0.0;  ///< at most so many frames a second, up to kMaxRate_hz; 0: all
-  Secret token = {};     ///< the installation's; empty: none is shown
+  double rate_hz = 0.0;  ///< maximum frames per second, up to kMaxRate_hz; 0: all
+  Secret token = {};     ///< the installation's; empty: none is sent
 };
 
-/// A skeleton of a kind that this build does not know is decoded as one of no strands, and so are its poses.
+/// A skeleton of a kind that this build does not know is decoded as one of zero strands, and so are its poses.
 struct SceneModel {
   std::string name;
   std::string kind;
@@ -114,22 +114,22 @@ struct FrameInfo {
   std::uint64_t tick = 0;
   double time_s = 0.0;
   std::int64_t utc_ns = 0;
-  wind::State wind;                                         ///< its `time` does not travel
-  std::optional<double> view_wind_from_deg = std::nullopt;  ///< what cameras with a wind_angle follow, [0, 360)
+  wind::State wind;                                         ///< its `time` is not sent
+  std::optional<double> view_wind_from_deg = std::nullopt;  ///< for cameras with a wind_angle, [0, 360)
 };
 
 struct Frame {
   FrameInfo info;
-  std::vector<pose::Pose> poses;  ///< padded to whole blocks with zeros; a hidden scene's is a StrandPose of no strands
+  std::vector<pose::Pose> poses;  ///< padded with zeros; a hidden scene's has zero strands
   std::vector<float> opacities;   ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
 };
 
-/// What a sensor's readings may have besides the speed, and whether they still have it.
+/// A quantity of a sensor's readings besides the speed, and whether it is still sent.
 struct QuantityStatus {
   wind::judging::Quantity quantity = wind::judging::Quantity::kDirection;
-  std::optional<double> age_s = std::nullopt;  ///< of the last one; nullopt: it has never come
-  bool is_missing = false;                     ///< readings come without it that should have it
-  std::string reason = {};  ///< of is_missing: since when, what is used instead, and what to do about it
+  std::optional<double> age_s = std::nullopt;  ///< of the last value; nullopt: never received
+  bool is_missing = false;                     ///< expected, but readings come without it
+  std::string reason = {};                     ///< for is_missing: since when, the replacement, and what to do
 };
 
 struct SensorStatus {
@@ -150,7 +150,7 @@ struct SensorStatus {
   std::uint64_t reconnects = 0;  ///< how often the device was found again after it had been lost
   bool replayed = false;         ///< a recording that is played again
   wind::judging::SensorState state = wind::judging::SensorState::kConnecting;
-  std::string state_reason;             ///< why, and what to do about it
+  std::string state_reason;             ///< the reason, and what to do
   std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
   std::optional<double> raw_direction_deg;
   std::vector<QuantityStatus> quantities = {};  ///< those that it has sent, or that its profile promises
@@ -158,7 +158,7 @@ struct SensorStatus {
   double reads_times_group = 1.0;  ///< the wind of the sensors together; levelled by it. 1: not known, or not levelled
 };
 
-/// What makes the wind that moves the scenes another than the real one (engine/wind/shaping/wind_shaping.hpp).
+/// The differences between the wind that moves the scenes and the real one (engine/wind/shaping/wind_shaping.hpp).
 struct Shaping {
   double site_gain = 1.0;
   double floor_gain = 1.0;
@@ -170,12 +170,12 @@ struct Shaping {
   double site_median_m_s = 0.0;
   double site_strong_m_s = 0.0;
   double site_known_s = 0.0;
-  std::string text = {};  ///< all that is at work, for a person to read; empty: nothing
+  std::string text = {};  ///< all active effects, for a person to read; empty: none
   double gusts = 1.0;
   double openness = 1.0;  ///< 0: closed, 1: open
 };
 
-/// How late something was that has its time, in the last 10 minutes.
+/// Lateness of scheduled work, in the last 10 minutes.
 struct Lateness {
   double p50_s = 0.0;
   double p99_s = 0.0;
@@ -196,14 +196,13 @@ struct RecorderStatus {
   std::uint64_t recorded_elsewhere = 0;                    ///< readings left to another process that recorded
 };
 
-/// How long one scene takes of each tick of the animation: a mean of the last seconds. One that is hidden takes
-/// nothing.
+/// One scene's part of each tick of the animation: a mean of the last seconds. A hidden one has 0.
 struct SceneCost {
   std::string scene;  ///< its name
   double tick_s = 0.0;
 };
 
-/// The animation as it runs.
+/// The state of the running animation.
 struct AnimationStatus {
   double running_s = 0.0;  ///< since it began
   double period_s = 0.0;   ///< of its ticks
@@ -217,37 +216,37 @@ struct Sensors {
   std::uint64_t late_ticks = 0;  ///< skipped since the daemon began
   std::uint32_t clients = 0;
   Shaping shaping = {};
-  std::uint64_t refused_clients = 0;                      ///< there was no place for them
+  std::uint64_t refused_clients = 0;                      ///< the maximum number was connected
   std::uint64_t stuck_clients = 0;                        ///< let go because they stopped reading
-  std::uint64_t idle_clients = 0;                         ///< let go because they subscribed to nothing, or not at all
+  std::uint64_t idle_clients = 0;                         ///< disconnected because they did not subscribe to anything
   std::optional<Lateness> io_lateness = std::nullopt;     ///< of the I/O thread's steps
-  std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks, with those that were skipped
-  std::optional<RecorderStatus> recorder = std::nullopt;  ///< nothing: nothing is recorded, or it is not known
+  std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks, including skipped ones
+  std::optional<RecorderStatus> recorder = std::nullopt;  ///< nullopt: nothing is recorded, or unknown
   look::Look look = {};                                   ///< within_limits(), whatever was sent
   std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMaxCameras
-  std::size_t camera = 0;                                 ///< which is on by the time of day; 0 where there are none
-  std::uint64_t parameters_revision = 0;                  ///< another number where a ParameterReport would be another
-  std::optional<AnimationStatus> animation = std::nullopt;  ///< nothing: not known, or it has no scenes
-  std::uint64_t recent_ticks = 0;          ///< of the last 10 minutes, with those that were skipped; 0: not known
-  std::uint64_t recent_skipped_ticks = 0;  ///< those of them that were skipped
-  std::vector<std::string> troubles = {};  ///< what else does not work at present and is tried again, for a person
+  std::size_t camera = 0;                 ///< index of the camera that is on by the time of day; 0 if there are none
+  std::uint64_t parameters_revision = 0;  ///< changes whenever a ParameterReport would change
+  std::optional<AnimationStatus> animation = std::nullopt;  ///< nullopt: unknown, or no scenes
+  std::uint64_t recent_ticks = 0;          ///< in the last 10 minutes, including skipped ones; 0: unknown
+  std::uint64_t recent_skipped_ticks = 0;  ///< the skipped ones of them
+  std::vector<std::string> troubles = {};  ///< other things that fail at present and are tried again, for a person
   std::uint8_t given_up = 0;               ///< the most of all clients' Display
-  /// How many times as far across the wind, and along it, gusts are alike here as usually; nothing: not known.
+  /// Reach of gusts across the wind, and along it, relative to the usual; nullopt: unknown.
   std::optional<double> gust_reach_across = std::nullopt, gust_reach_along = std::nullopt;
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };
 
-/// What sensors that play a recording are to do.
+/// An order for sensors that play a recording.
 struct PlayerCommand {
   PlayerAction action = PlayerAction::kReport;
-  std::string sensor = {};  ///< its name; empty: each that plays a recording
+  std::string sensor = {};  ///< its name; empty: every sensor that plays a recording
   std::uint32_t count = 1;  ///< kStep: 1 to kMaxSteps
   std::string place = {};   ///< kSeek: seconds, "+30", "-30", or a moment
   double rate = 1.0;        ///< kRate: kMinPlayRate to kMaxPlayRate
 };
 
-/// Has the server read its configuration again.
+/// Makes the server read its configuration again.
 struct ReloadCommand {
   std::string file = {};  ///< absolute path of the one that is meant; empty: whichever the server reads
 };
@@ -257,7 +256,7 @@ struct ReloadCommand {
 struct Control {
   std::string scene;  ///< its name; empty: change nothing, only report the status
   bool shown = true;
-  bool hide_others = false;  ///< and hide every other scene, in the same time
+  bool hide_others = false;  ///< also hides every other scene, in the same time
   double over_s = 2.0;       ///< 0 to kMaxFade_s
   std::optional<PlayerCommand> player = std::nullopt;
   std::optional<ReloadCommand> reload = std::nullopt;
@@ -267,7 +266,7 @@ struct Control {
 struct SceneState {
   std::string name;
   std::string kind;
-  bool shown = true;  ///< what it is, or what it is fading to
+  bool shown = true;  ///< its state, or the end of its fade
 };
 
 /// The status of a sensor that plays a recording.
@@ -283,16 +282,15 @@ struct PlayerState {
   bool is_finished = false;
   bool loops = false;
   std::uint64_t rounds = 0;  ///< how often it began again
-  std::uint64_t order = 0;   ///< the number of the order that this replies to; 0: none
+  std::uint64_t order = 0;   ///< the number of the order of this reply; 0: none
   std::uint64_t orders_done = 0;
   std::string refusal;  ///< why the last order was not carried out
 };
 
-/// kDone: applied, or nothing to apply. All others: nothing was changed. One that this build does not know is decoded
-/// as kFailed.
+/// kDone: applied, or nothing to apply. All others: nothing was changed. An unknown outcome is decoded as kFailed.
 enum class ReloadOutcome : std::uint8_t { kDone, kMistake, kNotAllowed, kNoFile, kFailed };
 
-/// What came of reading the configuration again.
+/// The result of reading the configuration again.
 struct ReloadReport {
   ReloadOutcome outcome = ReloadOutcome::kDone;
   std::vector<std::string> applied = {};
@@ -302,26 +300,26 @@ struct ReloadReport {
 
 struct ControlReply {
   bool done = false;
-  std::string message;  ///< what was done, or why not
+  std::string message;  ///< what was done, or the reason why not
   std::vector<SceneState> scenes;
   std::vector<PlayerState> players = {};
   std::optional<ReloadReport> reload = std::nullopt;
   std::optional<ParameterReport> parameters = std::nullopt;
 };
 
-/// One message to or from a sensor's device, as it went over the wire.
+/// One message to or from a sensor's device, as transmitted.
 struct RawTrace {
   std::string sensor;
   std::int64_t mono_ns = 0;
   std::int64_t utc_ns = 0;
-  bool received = true;             ///< from the device; otherwise sent to it
+  bool received = true;             ///< true: from the device; false: sent to it
   std::vector<std::uint8_t> bytes;  ///< the first kMaxRawBytes of them at most
   std::uint32_t length = 0;         ///< of the whole message
   std::uint64_t lost = 0;           ///< messages of this sensor that were passed over just before
 };
 
-/// How much a client that shows a part of a wall gives up of its pictures: so many steps. All parts are to look the
-/// same.
+/// The number of steps of detail that a client, which shows a part of a wall, omits in its pictures. All parts should
+/// look the same.
 struct Display {
   std::uint8_t given_up = 0;
 };
@@ -332,7 +330,7 @@ enum class Error : std::uint8_t {
   kTooLong,       ///< the size prefix is above the limit
   kNotVerified,   ///< the FlatBuffers verifier refuses it
   kUnknown,       ///< a body of a newer protocol: skip it
-  kInconsistent,  ///< verified, but lengths disagree or numbers are not finite
+  kInconsistent,  ///< verified, but lengths do not match or numbers are not finite
 };
 std::string_view name_of(Error error);
 
@@ -340,8 +338,7 @@ std::string_view name_of(Error error);
   throw std::runtime_error("stream message refused: " + std::string(name_of(error)));
 }
 
-/// A finished message, size prefix included. Vectors of a skeleton have the sizes that engine/pose/skeleton.hpp asks
-/// for.
+/// A finished message, size prefix included. Vectors of a skeleton have the sizes of engine/pose/skeleton.hpp.
 Bytes encode(const Hello& hello);
 Bytes encode(const Subscribe& subscribe);
 Bytes encode(const Scenes& scenes);
@@ -352,7 +349,7 @@ Bytes encode(const RawTrace& trace);
 Bytes encode(const Display& display);
 
 /// Encodes frame after frame into one buffer that it owns and keeps. Realtime-safe after the first frame that shows
-/// every scene of a set: it quantises straight into the buffer, and nothing is allocated. Thread-safe: no.
+/// every scene of a set: it quantises directly into the buffer, and does not allocate. Thread-safe: no.
 class FrameEncoder {
  public:
   FrameEncoder();
@@ -360,7 +357,7 @@ class FrameEncoder {
   FrameEncoder(FrameEncoder&&) noexcept;
   FrameEncoder& operator=(FrameEncoder&&) noexcept;
 
-  /// `poses` pairs with `skeletons` and `opacities`, scene by scene; no opacities at all: every scene is shown. A scene
+  /// `poses` corresponds to `skeletons` and `opacities`, scene by scene; empty opacities: every scene is shown. A scene
   /// of opacity 0 is hidden, and sends no pose. The bytes, size prefix included, are valid until the next call.
   std::span<const std::uint8_t> encode(const FrameInfo& info, std::span<const pose::Skeleton* const> skeletons,
                                        std::span<const pose::Pose* const> poses, std::span<const float> opacities = {});
@@ -370,15 +367,15 @@ class FrameEncoder {
   std::unique_ptr<Builder> builder_;
 };
 
-/// The byte count that a size prefix announces, or kTooLong where it is above `limit` or zero.
+/// The byte count of a size prefix, or kTooLong if it is above `limit` or zero.
 Result<std::size_t, Error> read_size_prefix(std::span<const std::uint8_t, kSizePrefixBytes> prefix, std::size_t limit);
 
-/// The message in `bytes` (without the size prefix; any alignment). Never reads outside them, whatever they hold. Texts
-/// come out as valid UTF-8 without control characters (make_printable()), so that they can go to a terminal or a log.
+/// The message in `bytes` (without the size prefix; any alignment). Never reads outside them. Texts are returned as
+/// valid UTF-8 without control characters (make_printable()), so that they are safe in a terminal or a log.
 Result<Message, Error> decode(std::span<const std::uint8_t> bytes);
 
-/// Do the frame's poses pair with the skeletons? Ask before kinematics: they are two messages, and only each is
-/// consistent. A hidden scene that came without its pose pairs with any skeleton.
+/// Returns true if the frame's poses match the skeletons. Check before kinematics: they are two messages, each only
+/// consistent in itself. A hidden scene without its pose matches any skeleton.
 bool fits(const Frame& frame, const Scenes& scenes);
 
 }  // namespace yuragi::wire

@@ -4,12 +4,11 @@
 
 namespace yuragi::workers {
 
-/// Whether threads are to share work that comes again and again, a tick at a time, or one is to do it alone: whichever
-/// took less time. Where another program holds the other cores, a thread that has begun a part and waits for its core
-/// holds the tick up.
+/// Decides whether threads share the repeated work of ticks, or one does it alone: whichever took less time. If another
+/// program uses the other cores, a thread that has begun a part and waits for its core delays the tick.
 ///
-/// It tries the other way for kTrialTicks of each kCycleTicks and then keeps the one whose mean is smaller, so that
-/// a trial of the slower way costs less than a hundredth of the difference, and slows fewer than one tick in a hundred.
+/// It tries the other way for kTrialTicks of each kCycleTicks and then keeps the one whose mean is smaller, so that a
+/// trial of the slower way costs less than a hundredth of the difference, and slows fewer than one tick in a hundred.
 /// It begins alone, with a trial after kTrialTicks. The choice changes no result (Pool). Thread-safe: no.
 /// Realtime-safe: yes.
 class SharingChoice {
@@ -17,10 +16,10 @@ class SharingChoice {
   static constexpr int kTrialTicks = 8;
   static constexpr int kCycleTicks = 1024;  ///< 17 s at 60 Hz
 
-  /// Is the next tick shared?
+  /// Returns true if the next tick is shared.
   bool is_shared() const noexcept { return is_shared_ != is_trial_; }
 
-  /// How long the tick took, done as is_shared() said.
+  /// Takes the duration of a tick, done according to is_shared().
   void took(Nanoseconds duration) noexcept {
     sum_ += duration;
     ++ticks_;
@@ -35,7 +34,7 @@ class SharingChoice {
   }
 
  private:
-  static constexpr int kKeptTicks = 64;  // before a trial, which it is compared with
+  static constexpr int kKeptTicks = 64;  // before a trial, for comparison
 
   void begin_sum() noexcept {
     sum_ = Nanoseconds{0};

@@ -5,7 +5,8 @@
 namespace yuragi::workers {
 namespace {
 
-/// Looks at a value before a thread sleeps: some hundreds of microseconds, by how long the processor pauses.
+/// Number of polls of a value before a thread sleeps: some hundreds of microseconds, depending on the processor's
+/// pause.
 constexpr int kSpins = 20'000;
 
 /// Pool::next_part_: the bits of the part, and one more work.
@@ -56,7 +57,7 @@ void Pool::run_task(Task task, const void* work) noexcept {
   }
 }
 
-/// False if all parts are taken.
+/// Returns false if all parts are taken.
 bool Pool::do_next_part() noexcept {
   std::uint32_t next = next_part_.load(std::memory_order_acquire);
   do {

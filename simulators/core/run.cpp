@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kTurn_ms = 20;
 
-/// SIGINT and SIGTERM as a descriptor to read from, for the lifetime of this object.
+/// SIGINT and SIGTERM as a readable descriptor, for the lifetime of this object.
 class StopSignals {
  public:
   StopSignals() {
@@ -47,7 +47,7 @@ class StopSignals {
   int descriptor_ = -1;
 };
 
-/// Standard input, which a simulator in the background of a terminal must be able to read in vain, and not be stopped.
+/// Standard input. A simulator in the background of a terminal gets an error when it reads, and is not stopped.
 LineReader typed_lines() {
   std::signal(SIGTTIN, SIG_IGN);
   return LineReader(STDIN_FILENO);

@@ -15,7 +15,7 @@
 namespace yuragi::simulators::core {
 namespace {
 
-/// Takes the values of one table, and refuses keys that nothing took.
+/// Takes the values of one table, and rejects the keys that were not read.
 class ScenarioTable {
  public:
   ScenarioTable(const toml::table& table, std::string place) : table_(table), place_(std::move(place)) {}
@@ -137,7 +137,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
   ScenarioTable table(root, "");
   Scenario scenario;
   scenario.duration_s = table.duration_s("duration");
-  double free_from_s = 0.0;  // the end of the ramps before
+  double free_from_s = 0.0;  // the end of the previous ramp
   for (ScenarioTable& one : table.tables("wind")) {
     const WindPhase phase = read_phase(one, file.parent_path());
     const bool is_first = scenario.phases.empty();

@@ -12,13 +12,13 @@ namespace yuragi::simulators::core {
 /// One simulated device of a scenario.
 struct ScenarioDevice {
   std::string name;
-  std::string simulate;             ///< what would stand behind `yuragi-sim` on a command line
+  std::string simulate;             ///< the arguments after `yuragi-sim` on a command line
   std::vector<std::string> faults;  ///< as for --fault
 };
 
 /// A rehearsal: a wind by time, and devices with their faults by time.
 struct Scenario {
-  std::optional<double> duration_s;  ///< nothing: until it is stopped
+  std::optional<double> duration_s;  ///< nullopt: until it is stopped
   std::vector<WindPhase> phases;     ///< as play_phases() wants them
   std::vector<ScenarioDevice> devices;
 };

@@ -31,7 +31,7 @@ class Simulator {
   /// One line for people.
   virtual std::string status() const = 0;
 
-  /// True: it has ended, and run() returns.
+  /// Returns true once it has ended: run() then returns.
   virtual bool is_over() const { return false; }
 };
 

@@ -13,11 +13,11 @@ namespace yuragi::simulators::core {
 /// that it accepts block. Thread-safe: no.
 class TcpListener {
  public:
-  /// Listens; port 0 takes a free one. Throws std::runtime_error for a host that is no numeric address, and for a place
-  /// that cannot be listened at.
+  /// Listens; port 0 takes a free one. Throws std::runtime_error for a host that is no numeric address, and if it
+  /// cannot listen there.
   TcpListener(const std::string& host, std::uint16_t port);
 
-  /// Where it listens, or did.
+  /// The address at which it listens, or listened last.
   const boost::asio::ip::tcp::endpoint& endpoint() const noexcept { return endpoint_; }
   bool is_open() const { return acceptor_.is_open(); }
   /// While it is open.

@@ -8,10 +8,10 @@
 
 namespace yuragi::simulators::core {
 
-/// What blows from a moment on, until the next phase begins.
+/// The wind from a moment until the next phase begins.
 struct WindPhase {
   double start_s = 0.0;
-  double ramp_s = 0.0;  ///< from `start_s` on: how long it takes from the phase before to this one
+  double ramp_s = 0.0;  ///< from `start_s` on: duration of the transition from the previous phase
   wind::turbulence::SyntheticWindSettings synthetic;
   std::string recording;  ///< a .windlog, played from its beginning; empty: the synthetic wind
 };

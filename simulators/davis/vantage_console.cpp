@@ -87,7 +87,7 @@ void VantageConsole::serve(std::span<const int> ready, double time_s, std::optio
   if (packets_left_ == 0 && time_s - last_command_s_ >= kSleepsAfter_s) is_awake_ = false;
 }
 
-/// What wakes it is lost; a command ends with LF or CR, and an empty one ends the packets.
+/// Bytes that wake it are lost; a command ends with LF or CR, and an empty one ends the packets.
 void VantageConsole::receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault) {
   for (const char c : bytes) {
     last_command_s_ = time_s;

@@ -16,7 +16,7 @@
 
 namespace yuragi::simulators::davis {
 
-/// What kind of console it is.
+/// The kind of console.
 struct VantageConsoleOptions {
   double interval_s = 2.5;         ///< from packet to packet
   bool knows_lps = true;           ///< firmware 1.90 or later
@@ -24,15 +24,15 @@ struct VantageConsoleOptions {
   std::uint64_t garbage_seed = 1;
 };
 
-/// The console of a Davis station with its data logger, as the maker's manual has it ("Vantage Pro, Vantage Pro2 and
-/// Vantage Vue Serial Communication Reference Manual", 2.6.1): asleep until it is woken, and again after two minutes
-/// without a command. It knows the commands LOOP, LPS, EEBRD of the setup bits, and TEST.
+/// The console of a Davis station with its data logger, as the maker's manual describes it ("Vantage Pro, Vantage Pro2
+/// and Vantage Vue Serial Communication Reference Manual", 2.6.1): asleep until it is woken, and again after two
+/// minutes without a command. It knows the commands LOOP, LPS, EEBRD of the setup bits, and TEST.
 class VantageConsole final : public core::Simulator {
  public:
   VantageConsole(std::unique_ptr<text::Wire> wire, const VantageConsoleOptions& options, core::MeasuredWind wind);
 
   const text::Wire& wire() const noexcept { return *wire_; }
-  /// Is it sending packets now? How many it was asked for and has not sent.
+  /// Returns how many of the requested packets are not yet sent; 0 when none are being sent.
   int packets_left() const noexcept { return packets_left_; }
 
   std::span<const core::FaultKind> known_faults() const override { return known_faults_; }

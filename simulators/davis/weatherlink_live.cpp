@@ -94,7 +94,7 @@ void WeatherLinkLive::broadcast(double /*time_s*/, std::optional<core::FaultKind
   ++sent_;
 }
 
-/// A broadcast, or the data of current conditions, which has more of everything and the barometer.
+/// A broadcast, or the current conditions, which have more fields and the barometer.
 std::string WeatherLinkLive::conditions(bool is_broadcast) const {
   const double speed_mph = moment_.speed_m_s * kLiveMphOfOneMetrePerSecond;
   const long direction_deg = speed_mph < 0.005 ? 0 : std::lround(moment_.direction_deg) % 360;

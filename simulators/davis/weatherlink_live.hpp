@@ -22,17 +22,17 @@ struct WeatherLinkLiveOptions {
   std::uint64_t garbage_seed = 1;
 };
 
-/// A WeatherLink Live with one station, transmitter 1, as the maker's "WeatherLink Live Local API" has it: a server of
-/// HTTP, which replies with current conditions, and is asked there for broadcasts, which end by themselves.
+/// A WeatherLink Live with one station, transmitter 1, as the maker's "WeatherLink Live Local API" describes it: a
+/// server of HTTP, which returns current conditions and starts broadcasts on request; these end by themselves.
 class WeatherLinkLive final : public core::Simulator {
  public:
   WeatherLinkLive(std::unique_ptr<text::Wire> http, std::unique_ptr<text::Wire> broadcasts,
                   const WeatherLinkLiveOptions& options, core::MeasuredWind wind);
 
   const text::Wire& http() const noexcept { return *http_; }
-  /// How often it was asked for broadcasts.
+  /// The number of requests for broadcasts.
   int broadcast_requests() const noexcept { return broadcast_requests_; }
-  /// How long after the start its broadcasts end.
+  /// The time after the start at which its broadcasts end.
   double broadcasts_until_s() const noexcept { return broadcasts_until_s_; }
 
   std::span<const core::FaultKind> known_faults() const override { return known_faults_; }

@@ -86,7 +86,7 @@ void UmbStation::serve(std::span<const int> ready, double time_s, std::optional<
   }
 }
 
-/// Whole frames to this device are answered; all else is passed over.
+/// Replies to whole frames to this device and ignores everything else.
 void UmbStation::take_requests(double time_s, std::optional<core::FaultKind> fault) {
   while (true) {
     received_.erase(0, std::min(received_.find('\x01'), received_.size()));
@@ -107,7 +107,7 @@ void UmbStation::take_requests(double time_s, std::optional<core::FaultKind> fau
   }
 }
 
-/// What stands between STX and ETX, for what stood there in the request.
+/// Returns the content of a reply, between STX and ETX, for the content of a request.
 std::string UmbStation::reply_to(std::string_view command, std::optional<core::FaultKind> fault) {
   const std::string head{command[0], kProtocolVersion};
   const std::string_view asked = command.substr(std::min<std::size_t>(command.size(), 2));

@@ -16,19 +16,19 @@
 
 namespace yuragi::simulators::lufft {
 
-/// What kind of device it is.
+/// The kind of device.
 struct UmbStationOptions {
   unsigned device_class = 7;  ///< 7: a weather station, 8: a VENTUS
   unsigned id = 1;
   bool has_fast_channels = true;
-  bool measures_more = true;        ///< than the wind: temperature, humidity, pressure, rain
-  bool refuses_long_query = false;  ///< of more than two channels
+  bool measures_more = true;        ///< it also measures temperature, humidity, pressure and rain
+  bool refuses_long_query = false;  ///< queries of more than two channels
   bool echoes = false;              ///< the line has one pair of wires: clients receive their own requests
   std::uint64_t garbage_seed = 1;
 };
 
-/// A device of Lufft's in its binary UMB protocol, as the maker's manuals have it (V200A-UMB manual V25, 20.3; WS
-/// manual, 6.1 to 6.14): it speaks when it is asked, by the commands 23h and 2Fh.
+/// A device of Lufft's in its binary UMB protocol, as the maker's manuals describe it (V200A-UMB manual V25, 20.3; WS
+/// manual, 6.1 to 6.14): it replies to the commands 23h and 2Fh.
 class UmbStation final : public core::Simulator {
  public:
   UmbStation(std::unique_ptr<text::Wire> wire, const UmbStationOptions& options, core::MeasuredWind wind);

@@ -17,7 +17,7 @@ namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kStep_s = 0.05;
-constexpr double kMaxInWav_bytes = 4.0e9;  // its sizes have 32 bits
+constexpr double kMaxInWav_bytes = 4.0e9;  // its sizes are 32-bit numbers
 
 struct CloseFile {
   void operator()(std::FILE* file) const noexcept { std::fclose(file); }
@@ -37,7 +37,7 @@ class SampleWriter {
     put(static_cast<std::uint32_t>(std::lround(std::clamp(sample, -1.0F, 1.0F) * 32767.0F)) & 0xFFFFU, 2);
   }
 
-  /// False: the reader has closed it.
+  /// Returns false if the reader has closed it.
   bool flush() {
     const bool is_written = std::fwrite(bytes_.data(), 1, bytes_.size(), file_) == bytes_.size();
     bytes_.clear();

@@ -21,11 +21,11 @@ namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kMaxAtOnce_s = 1.0;  // a halted machine does not make up for more
-// Of sound that a client has not taken. What is lost is a click in what is heard: a client on a busy machine is late by
-// seconds, one that hangs for longer.
+// Limit for sound that a client has not yet read. Exceeding it loses sound, which is heard as a click: a client on a
+// busy machine is late by seconds, one that hangs for longer.
 constexpr double kMaxWaiting_s = 20.0;
-// Not a whole sample; and large enough for the socket, which holds a few hundred pieces whatever their size, to hold
-// many turns' sound.
+// Not a whole number of samples; large enough that the socket, which holds a few hundred pieces of any size, holds the
+// sound of many turns.
 constexpr std::size_t kSplitBytes = 1021;
 
 /// One client, or the reader of the pipe.
@@ -93,7 +93,7 @@ struct Simulator::State {
     }
   }
 
-  /// False: the reader has gone.
+  /// Returns false if the reader has disconnected.
   bool give(Client& client) const {
     const auto bytes = std::as_bytes(std::span(samples));
     const auto most = static_cast<std::size_t>(kMaxWaiting_s * options.rate_hz) * options.channels * sizeof(float);

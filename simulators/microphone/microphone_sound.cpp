@@ -16,8 +16,8 @@ constexpr double kReference_m_s = 10.0;
 constexpr double kPressureSlope = 7.0 / 3.0;
 constexpr double kCorner_hz = 5.0;
 constexpr double kTile_s = 16.0;  // after which the noise repeats; inaudible, since the wind on top does not repeat
-/// How much more wind than the mean of all the face in the wind receives, and the one in the lee less, as a part of the
-/// speed.
+/// The share by which a microphone that faces the wind receives more wind than the mean of all, and one in the lee
+/// less.
 constexpr double kFaceEffect = 0.35;
 
 double amplitude_of(double level_db) {
@@ -63,7 +63,7 @@ Sound::Amplitudes Sound::amplitudes_of(const core::PlayedMoment& moment) const {
 /// Vowels of a low voice in syllables of a quarter of a second, three and a half seconds of every five.
 double Sound::voice_at(double time_s) {
   constexpr int kHarmonics = 10;
-  constexpr double kVoiceScale = 1.45;  // to a root mean square of about 1
+  constexpr double kVoiceScale = 1.45;  // scales to a root mean square of about 1
   const double pitch_hz = 120.0 + 25.0 * std::sin(kTurn * 0.7 * time_s);
   voice_phase_ = std::fmod(voice_phase_ + pitch_hz / options_.rate_hz, 1.0);
   if (std::fmod(time_s, 5.0) > 3.5) return 0.0;
@@ -74,7 +74,7 @@ double Sound::voice_at(double time_s) {
   return kVoiceScale * pulse * std::max(0.0, std::sin(kTurn * 2.0 * time_s));
 }
 
-/// A chord of three over a bass, another every two seconds.
+/// A chord of three notes over a bass; it changes every two seconds.
 double Sound::music_at(double time_s) const {
   constexpr std::array kRoots_hz = {41.2, 55.0, 49.0, 36.7};
   constexpr std::array kParts = {1.0, 1.25, 1.5, 2.0};

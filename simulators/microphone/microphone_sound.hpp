@@ -20,17 +20,17 @@ struct Options {
   std::size_t channels = 1;  ///< 1 to kMicrophoneMaxChannels
   double rate_hz = 48000.0;
   double exponent = 2.0;             ///< the root mean square grows with the wind to this power
-  double level_at_10_m_s_db = -20;   ///< of the whole wind noise, before it clips
-  double noise_db = -80;             ///< of each microphone's own white noise
-  std::optional<double> voice_db{};  ///< of a voice, the same at all microphones; empty: none
+  double level_at_10_m_s_db = -20;   ///< level of the whole wind noise, before it clips
+  double noise_db = -80;             ///< level of each microphone's own white noise
+  std::optional<double> voice_db{};  ///< level of a voice, the same at all microphones; nullopt: no voice
   std::optional<double> music_db{};  ///< likewise
-  bool has_faces = false;  ///< the microphones face the directions 0, 360 / channels, ... and respond to the wind by
-                           ///< how it meets them; otherwise all respond alike
+  bool has_faces = false;  ///< the microphones face the directions 0, 360 / channels, ... and one that faces the wind
+                           ///< receives more of it; otherwise all receive the same
   std::uint64_t seed = 1;
 };
 
-/// The sound at each microphone. The wind's own noise is made at each by itself: pressure with the spectrum f^-7/3
-/// above 5 Hz (Raspet, Webster and Dillion 2006, "Framework for wind noise studies"), so that it is independent at two
+/// The sound at each microphone. Wind noise is computed separately for each: pressure with the spectrum f^-7/3 above 5
+/// Hz (Raspet, Webster and Dillion 2006, "Framework for wind noise studies"), so that it is independent at two
 /// microphones. Voices and music reach all of them alike. What exceeds full scale is clipped, as by a converter. The
 /// same options give the same sound, bit for bit. Thread-safe: no.
 class Sound {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTenths = 10.0;
 
-/// The wind force of the Beaufort scale (WMO): the first force has the first of these speeds as its least.
+/// The wind force of the Beaufort scale (WMO): element i is the lowest speed of force i + 1.
 double beaufort_of(double speed_m_s) {
   constexpr std::array kLeast_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
   return static_cast<double>(std::ranges::upper_bound(kLeast_m_s, speed_m_s) - kLeast_m_s.begin());
@@ -63,7 +63,7 @@ void measure_multi_station(const Air& air, RegisterBank& registers) {
   registers.set(513, kTenths * air.rain_mm);
 }
 
-/// The same of makers who write hundredths.
+/// The same, for makers that send hundredths.
 void measure_multi_station_x100(const Air& air, RegisterBank& registers) {
   measure_multi_station(air, registers);
   registers.set(500, 100.0 * air.speed_m_s);
@@ -119,8 +119,9 @@ void measure_calypso(const Air& air, RegisterBank& registers) {
   }
 }
 
-/// Lufft UMB: from 10 humidity, from 14 pressure, from 18 direction, 31 temperature; speed: 42 actual, 43 least, 44
-/// most, 45 mean, 46 vectorial mean, 47 fast. It has all of 0 to 124; what this model does not measure is an error.
+/// Lufft UMB: from 10 humidity, from 14 pressure, from 18 direction, 31 temperature; speed: 42 actual, 43 minimum, 44
+/// maximum, 45 mean, 46 vectorial mean, 47 fast. Channels 0 to 124 exist; those that this model does not measure return
+/// an error.
 void measure_lufft(const Air& air, RegisterBank& registers) {
   for (int i = 0; i <= 124; ++i) registers.set(i, 0x7FFF);
   for (int i = 10; i <= 13; ++i) registers.set(i, kTenths * air.humidity_percent);

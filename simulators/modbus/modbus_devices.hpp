@@ -18,7 +18,7 @@ struct Air {
   double gust_m_s = 0.0;       ///< the strongest of the last seconds
   double lull_m_s = 0.0;       ///< the weakest of them
   double mean_m_s = 0.0;
-  // What does not change: for stations that measure more than wind.
+  // Constant values of stations that measure more than wind.
   double temperature_c = -3.7;
   double humidity_percent = 64.0;
   double pressure_hpa = 1009.0;
@@ -34,7 +34,7 @@ class RegisterBank {
   void set_float_low_word_first(int address, double value);  ///< the low one first
   void set_bits(int address, std::uint16_t bits) { registers_[static_cast<std::uint16_t>(address)] = bits; }
 
-  /// Empty: there is no such register.
+  /// Returns nullopt if the register does not exist.
   std::optional<std::uint16_t> at(std::uint16_t address) const;
 
  private:
@@ -46,15 +46,15 @@ struct Slave {
   std::uint8_t id = 1;        ///< from the factory
   std::uint8_t function = 3;  ///< the only one that it supports: 3 or 4
   void (*measure)(const Air& air, RegisterBank& registers) = nullptr;
-  /// A register whose reading clears lull, mean and gust; 0 if there is none.
+  /// Reading this register clears lull, mean and gust; 0: there is no such register.
   std::uint16_t clearing_register = 0;
 };
 
 /// The names of all devices.
 std::vector<std::string> modbus_device_names();
 
-/// The slaves of a device: "NAME", or "NAME@ID" with the id of its first one; those of a device of several follow it.
-/// Throws std::runtime_error for an unknown name and for an id that no slave can have.
+/// The slaves of a device: "NAME", or "NAME@ID" with the id of its first one; further slaves of the same device follow
+/// it. Throws std::runtime_error for an unknown name and for an id that no slave can have.
 std::vector<Slave> modbus_slaves(std::string_view name_and_id);
 
 }  // namespace yuragi::simulators::modbus

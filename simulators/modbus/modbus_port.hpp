@@ -22,13 +22,13 @@ class Port {
   virtual ~Port() = default;
 
   virtual bool is_rtu() const = 0;
-  /// For others to open: "127.0.0.1:1502", "/dev/pts/3".
+  /// The name by which others open it: "127.0.0.1:1502", "/dev/pts/3".
   virtual std::string name() const = 0;
 
   virtual std::vector<int> descriptors() const = 0;
   /// The requests that have arrived on those of the descriptors that can be read. Never waits.
   virtual std::vector<ClientRequest> receive(std::span<const int> ready) = 0;
-  /// Sends bytes to a client; does nothing if it has gone.
+  /// Sends bytes to a client; does nothing if it has disconnected.
   virtual void send(int client, std::span<const std::uint8_t> bytes) = 0;
 
   /// Closes all connections and the port.

@@ -96,7 +96,7 @@ class TcpPort final : public Port {
     if (client >= 0) clients_[client] = {};
   }
 
-  /// False: the client has closed the connection.
+  /// Returns false if the client has closed the connection.
   static bool read_from(int client, Bytes& incoming) {
     std::array<std::uint8_t, 512> block{};
     const ssize_t size = recv(client, block.data(), block.size(), 0);

@@ -100,13 +100,13 @@ class EcowittPushSimulator::State {
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
     gust_m_s_ = std::max(gust_m_s_, moment_.speed_m_s);
-    // On a busy machine the pieces of a request can take longer than the time between two: it is finished first.
+    // On a busy machine sending the pieces of a request can take longer than the push interval: it is finished first.
     if (time_s >= next_push_s_ && waiting_.empty()) {
       while (next_push_s_ <= time_s) next_push_s_ += options_.interval_s;
       if (fault != core::FaultKind::kSilence) begin_push(time_s);
       gust_m_s_ = 0.0;
     }
-    // Connects, sends what is due, and reads the answer; nothing waits.
+    // Connects, sends what is due, and reads the reply. Never waits.
     context_.restart();
     context_.poll();
     send_what_is_due(time_s);
@@ -119,7 +119,7 @@ class EcowittPushSimulator::State {
 
   std::string status() const {
     return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {}{}{}", moment_.speed_m_s, moment_.direction_deg,
-                       count_text(pushed_, "request"), last_answer_.empty() ? "no answer" : last_answer_,
+                       count_text(pushed_, "request"), last_answer_.empty() ? "no reply" : last_answer_,
                        fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
   }
 
@@ -168,7 +168,7 @@ class EcowittPushSimulator::State {
     const std::string host = fmt::format("{}:{}", options_.host, options_.port);
     if (options_.protocol == PushProtocol::kEcowitt) {
       const std::string form = ecowitt_form(station, heard);
-      // With the blank that some firmware leaves behind the length.
+      // With the blank that some firmware sends after the length.
       return fmt::format(
           "POST {} HTTP/1.1\r\nHOST: {}\r\nConnection: Close\r\nContent-Type: application/x-www-form-urlencoded\r\n"
           "Content-Length:{} \r\n\r\n{}",

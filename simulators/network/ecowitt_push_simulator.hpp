@@ -9,7 +9,7 @@
 
 namespace yuragi::simulators::network {
 
-/// In whose protocol a gateway pushes.
+/// The protocol in which a gateway pushes.
 enum class PushProtocol : std::uint8_t {
   kEcowitt,       ///< POST, PASSKEY
   kWunderground,  ///< GET, ID and PASSWORD
@@ -44,7 +44,7 @@ class EcowittPushSimulator final : public core::Simulator {
   std::string status() const override;
 
   std::uint64_t pushed() const noexcept;            ///< how many pushes have been begun
-  const std::string& last_answer() const noexcept;  ///< the first line of the last answer; empty: there was none
+  const std::string& last_answer() const noexcept;  ///< the first line of the last reply; empty: no reply yet
 
  private:
   class State;

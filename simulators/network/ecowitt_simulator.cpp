@@ -137,7 +137,7 @@ class EcowittSimulator::State {
     std::deque<Due> waiting = {};
   };
 
-  /// The anemometer measures all the time, and speaks at its own pace.
+  /// The anemometer measures all the time, and reports at its own interval.
   void measure(double time_s) {
     moment_ = wind_.at(time_s, fault_);
     gust_m_s_ = std::max(gust_m_s_, moment_.speed_m_s);
@@ -170,7 +170,7 @@ class EcowittSimulator::State {
     }
   }
 
-  /// As a recorded answer has it: the size is counted up to the name's end, without the checksum.
+  /// As in a recorded reply: the size counts up to the name's end, without the checksum.
   GatewayBytes who_it_is() const {
     GatewayBytes all = {0xFF, 0xFF, 0x12, 0x00, static_cast<std::uint8_t>(16 + kGatewayName.size())};
     for (const std::uint8_t byte : kMacAddress) all.push_back(byte);

@@ -20,7 +20,7 @@ struct EcowittOptions {
 };
 
 /// A gateway of Fine Offset's with a wind sensor, as the maker's "Data exchange TCP Protocol for GW1000" describes it:
-/// it replies to the request for its current values, and to no other. It can be searched for.
+/// it replies only to the request for its current values. It can be searched for.
 ///
 /// Faults: silence, freeze, spike, garbage, split, partial, bad-checksum, wrong-transaction (the reply to another
 /// command), late, disconnect, unplug (the anemometer is not heard).

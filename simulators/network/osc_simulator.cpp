@@ -46,12 +46,12 @@ class OscSimulator::State {
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
     if (time_s < next_s_ || fault == core::FaultKind::kSilence) return;
-    while (next_s_ <= time_s) next_s_ += options_.interval_s;  // what was due while nobody served is not made up for
+    while (next_s_ <= time_s) next_s_ += options_.interval_s;  // skips messages that were due between the calls
     std::string message = this->message();
     if (fault == core::FaultKind::kPartial) message.resize(message.size() / 2);
     if (fault == core::FaultKind::kGarbage)
       std::ranges::generate(message, [this] { return static_cast<char>(random_()); });
-    // Without a listener the next one fails, which is ignored.
+    // Without a listener the next send fails; that is ignored.
     boost::system::error_code ignored;
     socket_.send_to(boost::asio::buffer(message), to_, 0, ignored);
     ++sent_;

@@ -15,7 +15,7 @@ struct OscOptions {
   std::uint16_t port = 9000;
   std::string address = "/wind";  ///< of the messages
   std::size_t speed_argument = 0;
-  std::size_t direction_argument = 1;  ///< another one than the speed's; those between are 0
+  std::size_t direction_argument = 1;  ///< not that of the speed; arguments between them are 0
   double interval_s = 0.1;
   std::uint64_t seed = 1;  ///< of the bytes of the garbage fault
 };

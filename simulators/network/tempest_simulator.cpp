@@ -76,7 +76,7 @@ class TempestSimulator::State {
   }
 
  private:
-  /// What was due while nobody served is not made up for.
+  /// Messages that were due while serve() was not called are skipped.
   static bool is_due(double& next_s, double interval_s, double time_s) {
     if (time_s < next_s) return false;
     while (next_s <= time_s) next_s += interval_s;
@@ -119,7 +119,7 @@ class TempestSimulator::State {
       message.resize(kHubGarbageBytes);
       std::ranges::generate(message, [this] { return static_cast<char>(random_()); });
     }
-    // Without a listener the next one fails, which is ignored.
+    // Without a listener the next send fails; that is ignored.
     boost::system::error_code ignored;
     socket_.send_to(boost::asio::buffer(message), to_, 0, ignored);
     ++sent_;

@@ -11,10 +11,10 @@
 namespace yuragi::simulators::network {
 
 struct TempestOptions {
-  std::string host = "127.0.0.1";  ///< whom it sends to: an address, or that of a broadcast
+  std::string host = "127.0.0.1";  ///< the destination: an address, or a broadcast address
   std::uint16_t port = 50222;
   std::string hub = "HB-00013030";
-  std::vector<std::string> stations = {"ST-00000512"};  ///< they stand in the same wind
+  std::vector<std::string> stations = {"ST-00000512"};  ///< all stations are in the same wind
   double rapid_wind_interval_s = 3.0;                   ///< 0: none, as with an empty battery
   double report_interval_s = 60.0;
   std::uint64_t seed = 1;  ///< of the bytes of the garbage fault
@@ -24,7 +24,7 @@ struct TempestOptions {
 /// send. The hub's clock begins at 1 700 000 000 s.
 ///
 /// Faults: silence (the hub is off), freeze, spike, garbage, partial (the ends of messages are missing), wrong-id (the
-/// messages of other stations), unplug (the stations are off: the hub alone speaks).
+/// messages of other stations), unplug (the stations are off: only the hub sends).
 class TempestSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error for a host that is no address.

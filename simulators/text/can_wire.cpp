@@ -1,5 +1,5 @@
-// A CAN interface of the kernel's, as it is or virtual (vcan): what is written there are the kernel's own frames
-// (linux/can.h), 16 bytes each.
+// A CAN interface of the kernel, real or virtual (vcan). It takes frames in the kernel's format (linux/can.h), 16 bytes
+// each.
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -36,7 +36,7 @@ class CanWire final : public Wire {
   std::vector<int> descriptors() const override { return {}; }
   std::string read(std::span<const int> /*ready*/) override { return {}; }
 
-  /// Writes one frame; ignores bytes that are not one. Looks again each time for an interface that has gone away.
+  /// Writes one frame; ignores bytes that are not one. Searches again each time for an interface that has disappeared.
   void write(std::string_view bytes) override {
     if (bytes.size() != CAN_MTU) return;
     if (socket_ < 0 && !connect()) return;
@@ -60,7 +60,7 @@ class CanWire final : public Wire {
     if (place.can_ifindex == 0) return false;
     socket_ = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
     if (socket_ < 0) return false;
-    // It hears nothing: without a filter no frame is received.
+    // It receives nothing: without a filter no frame arrives.
     const bool is_bound = setsockopt(socket_, SOL_CAN_RAW, CAN_RAW_FILTER, nullptr, 0) == 0 &&
                           bind(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
     if (is_bound) return true;

@@ -30,7 +30,7 @@ namespace {
 constexpr unsigned kAddress = 35;
 constexpr unsigned kOtherAddress = 36;
 constexpr unsigned kPriorityAndPgn = 0x09FD02;  // 2, 130306
-/// What the analyzer calls the references, by their numbers on the bus.
+/// The analyzer's names of the references, by their numbers on the bus.
 struct BusReference {
   std::string_view name;
   std::string_view text;

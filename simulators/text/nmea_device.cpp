@@ -14,7 +14,7 @@
 //   wxt      0r1,Dn=226D,Dm=231D,Dx=236D,Sn=3.1M,Sm=3.4M,Sx=3.8Mccc    Vaisala WXT; unasked, and on the request "0r1Goe"
 // clang-format on
 //
-// hh: the exclusive or of what stands between '$' and '*', or STX and ETX, in hexadecimal. CR LF ends each; ccc: its
+// hh: the exclusive or of the bytes between '$' and '*', or STX and ETX, in hexadecimal. CR LF ends each; ccc: its
 // CRC-16 (M211840EN, appendix C). Sources: gpsd www/NMEA.adoc; Vaisala WXT520 user's guide (M210906EN), NMEA 0183 v3.0
 // query messages; Gill WindSonic manual 1405-PS-0019; FT Technologies FT702LT manual 5.3; Lufft V200A-UMB manual
 // V25 20.5.4.
@@ -37,7 +37,7 @@ constexpr double kKnotsOfAMetrePerSecond = 3600.0 / 1852.0;
 constexpr double kKmhOfAMetrePerSecond = 3.6;
 constexpr double kGillCalm_m_s = 0.05;
 
-/// What a fault changes in a message.
+/// How a fault changes a message.
 struct Style {
   std::string_view talker = "WI";
   char node = 'Q';

@@ -16,7 +16,7 @@ std::vector<std::string> nmea_format_names();
 /// std::runtime_error for an unknown format.
 std::unique_ptr<Device> make_nmea_device(const std::vector<std::string>& formats);
 
-/// Does a device of this format send only on request?
+/// Returns true if a device of this format sends only on request.
 bool is_only_polled(std::string_view nmea_format);
 
 }  // namespace yuragi::simulators::text

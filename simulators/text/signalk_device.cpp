@@ -1,5 +1,5 @@
 // Signal K deltas, written here independently of the drivers' decoder: each value in a delta of its own, as
-// signalk-server sends them (src/subscriptionmanager.ts), and before the first one what it remembers. Sources: Signal K
+// signalk-server sends them (src/subscriptionmanager.ts), and first the values that it remembers. Sources: Signal K
 // specification 1.x, streaming, subscription protocol, schemas/groups/environment.json.
 #include "simulators/text/signalk_device.hpp"
 
@@ -68,7 +68,7 @@ class SignalKDevice final : public Device {
 
  private:
   bool is_asked_;
-  bool is_subscribed_;  ///< by anybody; the wire knows who has not asked yet
+  bool is_subscribed_;  ///< by any client; the wire knows which clients have not subscribed
   bool recalls_ = false;
   unsigned number_ = 0;
 };

@@ -22,7 +22,7 @@ struct SerialOrTcpOptions {
   std::unique_ptr<Wire> make_wire() const;
 };
 
-/// Prints where a simulator is, for scripts that wait for that line.
+/// Prints a simulator's address, for scripts that wait for that line.
 void print_place(const Wire& wire);
 
 /// The options of simulators that send text: over which transport, and how often.
@@ -30,7 +30,7 @@ struct Options {
   SerialOrTcpOptions line = {};
   std::string udp;
   std::string can;                      ///< of the commands whose device sends frames
-  WebSocketWireOptions websocket = {};  ///< its path: what clients ask for
+  WebSocketWireOptions websocket = {};  ///< its path: what clients request
   std::string websocket_place;          ///< HOST:PORT; empty: no WebSocket
   double rate_hz = 4.0;
   core::CommonOptions common;

@@ -21,24 +21,23 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  /// The faults of its own that it can play; freeze and spike are the wind's (MeasuredWind), faults of bytes the
-  /// simulator's.
+  /// The faults that it can play itself; freeze and spike are played by MeasuredWind, faults of bytes by the simulator.
   virtual std::span<const core::FaultKind> known_faults() const = 0;
 
   /// Its messages about one moment, with their line ends.
   virtual std::vector<std::string> send_messages(const core::PlayedMoment& moment,
                                                  std::optional<core::FaultKind> fault) = 0;
 
-  /// Returns its greeting to each new client, with its line end.
+  /// Returns the greeting for each new client, with its line end.
   virtual std::string greeting() const { return {}; }
 
-  /// Does a client get only the greeting until it has sent something?
+  /// Returns true if a client gets only the greeting until it has sent something.
   virtual bool waits_for_clients() const { return false; }
 
   /// Takes a line that a client has sent, without its end.
   virtual void hear(std::string_view /*line*/) {}
 
-  /// Is this line, without its end, the device's request?
+  /// Returns true if this line, without its end, is a request to the device.
   virtual bool is_request(std::string_view line) const = 0;
 };
 

@@ -148,7 +148,7 @@ class UdpWire final : public Wire {
   std::vector<int> descriptors() const override { return {}; }
   std::string read(std::span<const int> /*ready*/) override { return {}; }
   void write(std::string_view bytes) override {
-    // Without a listener the next write fails, which is ignored.
+    // Without a listener the next write fails; that is ignored.
     boost::system::error_code ignored;
     if (socket_.is_open()) socket_.send_to(boost::asio::buffer(bytes), endpoint_, 0, ignored);
   }

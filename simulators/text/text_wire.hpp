@@ -22,7 +22,7 @@ class Wire {
   virtual std::vector<int> descriptors() const = 0;
   /// The bytes that clients have sent; `ready` are the descriptors that can be read.
   virtual std::string read(std::span<const int> ready) = 0;
-  /// What each client gets first. A wire that knows no clients does not send it.
+  /// Sets what each client gets first. A wire that knows no clients does not send it.
   virtual void greet_with(const std::string& /*bytes*/) {}
   /// From now on a client gets only its greeting until it has sent something. A wire that cannot receive continues to
   /// send.
@@ -30,8 +30,7 @@ class Wire {
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 
-  /// Drops its clients and refuses those that come, for as long as it is wanted. Only a wire whose protocol can refuse
-  /// does so.
+  /// While `is_wanted`, drops its clients and refuses new ones. Only a wire whose protocol can refuse does so.
   virtual void refuse(bool /*is_wanted*/) {}
 
   /// Closes the port and all connections. A second call does nothing.
@@ -52,8 +51,8 @@ std::unique_ptr<Wire> make_tcp_wire(const std::string& host, std::uint16_t port)
 struct WebSocketWireOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0 takes a free one
-  std::string path = "/";  ///< what a client asks for begins so; another one gets HTTP 404
-  std::string token = {};  ///< a client without it gets HTTP 401; empty: none is wanted
+  std::string path = "/";  ///< requests must begin with this; any other gets HTTP 404
+  std::string token = {};  ///< a client without it gets HTTP 401; empty: no token is needed
 };
 
 /// A WebSocket server, each message as text. Throws std::runtime_error if the address cannot be listened on.

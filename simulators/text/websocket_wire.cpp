@@ -1,5 +1,5 @@
-// A WebSocket server (RFC 6455) by Boost.Beast. What is written without a line's end is a frame that the next one
-// continues; a line's end ends the message, and is not sent.
+// A WebSocket server (RFC 6455) by Boost.Beast. Text without a line's end becomes a frame that the next one continues;
+// a line's end ends the message and is not sent.
 #include <algorithm>
 #include <array>
 #include <deque>
@@ -32,10 +32,10 @@ using boost::system::error_code;
 
 /// The longest message that a client may send.
 constexpr std::size_t kMaxSaid = 4096;
-/// More than this waits only for a client that does not read: it is dropped.
+/// Limit for waiting messages. Only a client that does not read reaches it; it is dropped.
 constexpr std::size_t kMaxWaiting = 1000;
 
-/// A client from its request on. Its handlers own it, so that it outlives what is under way.
+/// A client, from its request on. Its handlers own it, so that it outlives its pending operations.
 class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
  public:
   WebSocketPeer(tcp::socket socket, const WebSocketWireOptions& options, bool is_refused, std::string greeting)
@@ -57,7 +57,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
     send_next();
   }
   /// Returns the messages that it has sent, each with a line's end.
-  std::string take_said() { return std::exchange(said_, {}); }
+  std::string take_received() { return std::exchange(received_, {}); }
   bool has_spoken() const { return has_spoken_; }
   bool has_ended() const { return has_ended_; }
   void end() {
@@ -98,7 +98,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->end();
       self->has_spoken_ = true;
-      self->said_ += beast::buffers_to_string(self->buffer_.data()) + '\n';
+      self->received_ += beast::buffers_to_string(self->buffer_.data()) + '\n';
       self->buffer_.clear();
       self->listen();
     });
@@ -121,7 +121,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   beast::flat_buffer buffer_{kMaxSaid};
   http::request<http::empty_body> request_;
   std::deque<Frame> waiting_;
-  std::string said_;
+  std::string received_;
   bool has_spoken_ = false;
   bool is_accepted_ = false;
   bool is_sending_ = false;
@@ -158,7 +158,7 @@ class WebSocketWire final : public Wire {
     }
     turn();
     std::string received;
-    for (const auto& peer : peers_) received += peer->take_said();
+    for (const auto& peer : peers_) received += peer->take_received();
     std::erase_if(peers_, [](const auto& peer) { return peer->has_ended(); });
     return received;
   }

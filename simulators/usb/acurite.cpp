@@ -1,13 +1,13 @@
 // AcuRite 01035 (24c0:0003). Source: weewx acurite.py; wxforum topic 27244 (speed).
 //
-// It sends nothing unasked; the host requests input reports. Report 1, 10 bytes, is new every 18 s, by turns of two
-// kinds:
+// It sends nothing unasked; the host requests input reports. Report 1, 10 bytes, is new every 18 s, two kinds
+// alternate:
 //
 //   01 channel and id (2)   71   speed high 5 bits   speed low 3 bits << 4 | direction   rain (2)               link ff
 //                           78                       ... | temperature, high 4 bits      temperature, humidity
 //
 // Report 2, 25 bytes: the console's own sensors. The speed n is 0.8278 n + 1 km/h; the direction is a code's number.
-// The others do not change here: 12 tips of 0.01 inch of rain; 8 << 7 | 0x1f, less 720, eighteenths of a degree
+// The other values are constant here: 12 tips of 0.01 inch of rain; 8 << 7 | 0x1f, less 720, eighteenths of a degree
 // Celsius; 83 %.
 #include "simulators/usb/acurite.hpp"
 

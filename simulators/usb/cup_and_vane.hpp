@@ -10,7 +10,7 @@ namespace yuragi::simulators::usb {
 ///
 ///   cup    one pulse for each 0.1 m of wind that has passed
 ///   vane   a potentiometer between ground and 5 V, whose track begins at north, runs clockwise and covers 356 degrees;
-///          in the 4 degrees without a track a resistor pulls the input to 5.5 V, outside of the track's range
+///   in the remaining 4 degrees a resistor pulls the input to 5.5 V, outside of the track's range
 ///
 /// Thread-safe: no.
 class CupAndVane {

@@ -39,7 +39,7 @@ constexpr double kWriteByte_s = 0.03;
 constexpr double kBlockReply_s = 0.02;       // from the request to the first report
 constexpr double kBlockReport_s = 0.01;      // from one report to the next
 constexpr double kBlockSplitReport_s = 0.3;  // with the fault
-constexpr double kBlockLateReply_s = 2.5;    // with the fault: longer than a host's time-out of 1 s
+constexpr double kBlockLateReply_s = 2.5;    // with the fault: longer than a host's timeout of 1 s
 
 }  // namespace
 
@@ -55,7 +55,7 @@ FineOffset::FineOffset(FineOffsetRecord record, const HidModelOptions& options)
       position_(kFirstRecord),
       next_update_s_(paced(kFirstUpdate_s)),
       next_minute_s_(paced(kFirstMinute_s)) {
-  // The fixed block of a console that has been set up, and one record from before the first message of its sensors.
+  // The fixed block of a console that has been set up, and one record with no message of its sensors yet.
   memory_[0x00] = 0x55;
   memory_[0x01] = 0xAA;
   std::fill(memory_.begin() + 0x10, memory_.begin() + 0x100, std::uint8_t{0});
@@ -114,7 +114,7 @@ void FineOffset::update_current_record() {
   gust_m_s_ = 0.0;
 }
 
-/// After each minute: the current record is a minute older, or it is kept and a new one begins.
+/// At the end of a minute: the current record is a minute older, or it is stored and a new one begins.
 void FineOffset::end_minute() {
   ++delay_min_;
   if (delay_min_ < kMinutesPerRecord) {

@@ -11,8 +11,8 @@
 
 namespace yuragi::simulators::usb {
 
-/// What distinguishes one HID device from another on the bus. Ours have one interface, one interrupt IN end point (1)
-/// and, some of them, one interrupt OUT end point (1).
+/// The properties that distinguish one HID device from another on the bus. Ours have one interface, one interrupt IN
+/// end point (1) and, some of them, one interrupt OUT end point (1).
 struct HidIdentity {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
@@ -25,7 +25,7 @@ struct HidIdentity {
   bool is_full_speed = false;     ///< otherwise low speed, with packets of 8 bytes
 };
 
-/// The descriptors that such a device sends.
+/// The descriptors of a device with that identity.
 Descriptors hid_descriptors(const HidIdentity& identity);
 
 /// The report descriptor of a vendor's own device without report ids: one input and one output report of `size` bytes.
@@ -37,8 +37,8 @@ struct HidModelOptions {
   std::uint64_t seed = 1;  ///< of the garbage fault
 };
 
-/// What every HID station shares: descriptors, the requests of the HID class, and the reports that wait for the host. A
-/// station adds the content of its reports, and when it sends them.
+/// The common part of HID stations: descriptors, the requests of the HID class, and the reports that wait for the host.
+/// A station adds the content of its reports, and the times at which it sends them.
 ///
 /// kFreeze and kSpike come with the wind that it is given (MeasuredWind). Thread-safe: no.
 class HidModel : public Device {
@@ -56,7 +56,7 @@ class HidModel : public Device {
 
   /// Advances to now_s().
   virtual void play() = 0;
-  /// Takes an output report, received by either way (without a report id). False: refused.
+  /// Takes an output report, received by either way (without a report id). Returns false if it refuses it.
   virtual bool take_output(std::span<const std::uint8_t> report) = 0;
   /// Returns the reply to GET_REPORT for input report `id`; nullopt: refused.
   virtual std::optional<Bytes> input_report(std::uint8_t id);
@@ -92,7 +92,7 @@ class HidModel : public Device {
   std::optional<core::FaultKind> fault_;
 };
 
-/// Which of the 16 points of the compass: 0 north, 1 north-north-east ... 15.
+/// Returns the point of the compass, 0 to 15: 0 north, 1 north-north-east ... 15.
 unsigned compass_point(double direction_deg);
 
 }  // namespace yuragi::simulators::usb

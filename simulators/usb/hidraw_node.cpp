@@ -95,7 +95,8 @@ void HidrawNode::hand_out_reports() {
     readers_.pop_front();
     const Bytes report = std::move(reports_.front());
     reports_.pop_front();
-    // Before the reply: the program may call poll() at once, and would read again if there seemed to be more.
+    // Before the reply: the program may call poll() at once, and would read again if more reports seemed to be
+    // available.
     readiness_.set_ready(!reports_.empty());
     const ProgramMemory buffer = reader.argument();
     buffer.write(0, report);

@@ -38,7 +38,7 @@ class HidrawNode final : public EmulatedNode {
   struct Pending {
     std::uint64_t transfer = 0;
     double deadline_s = 0.0;
-    std::weak_ptr<ProgramCall> call;  // expired once it is completed
+    std::weak_ptr<ProgramCall> call;  // expires when it is completed
   };
 
   Host* host_;

@@ -26,7 +26,7 @@ constexpr std::size_t kFrameHeader = 6;
 constexpr std::size_t kMaxReplies = 16;
 constexpr std::uint32_t kSerialNumber = 320'012'345;
 constexpr std::uint8_t kCounterPin = 4;  // where the cup is wired to: FIO4
-/// Error codes. The maker has a list; that these are the right ones of it is unconfirmed. None is 0.
+/// Error codes. The maker publishes a list; that these are the right ones is unconfirmed. None is 0.
 constexpr std::uint8_t kNotEnabled = 0x50;
 constexpr std::uint8_t kNotAnInput = 0x51;
 
@@ -46,7 +46,7 @@ std::uint16_t labjack_sum_of(View bytes) {
   return static_cast<std::uint16_t>(sum);
 }
 
-/// The sum of what follows the first byte of a header, folded into 8 bits twice.
+/// The sum of the bytes after the first byte of a header, folded into 8 bits twice.
 std::uint8_t folded_sum(View frame) {
   unsigned sum = labjack_sum_of(frame.subspan(1, kFrameHeader - 1));
   sum = (sum & 0xFFU) + (sum >> 8U);
@@ -196,8 +196,7 @@ class Labjack final : public Device {
     return frame_of(0x00, reply);
   }
 
-  /// Does the cup's pin lead to this counter? Counters are given pins in turn, from an offset on, and only if they are
-  /// on.
+  /// Returns true if the cup's pin is connected to this counter. Enabled counters get pins in order, from an offset on.
   bool is_wired(int counter) const {
     const unsigned timers = timers_and_counters_ & 3U;
     const bool has_zero = (timers_and_counters_ & 4U) != 0;

@@ -16,7 +16,7 @@ class LaunchedProgram final : public core::Simulator {
   /// Starts it; `simulator` must outlive this. Throws std::system_error.
   LaunchedProgram(const std::vector<std::string>& command, core::Simulator& simulator);
 
-  /// As a shell reports it; nullopt: it still runs.
+  /// As a shell reports it; nullopt: it is still running.
   std::optional<int> exit_code() const noexcept { return exit_code_; }
 
   std::span<const core::FaultKind> known_faults() const override { return simulator_.known_faults(); }

@@ -10,7 +10,7 @@ namespace yuragi::simulators::usb {
 /// (ProgramCallQueue); only poll() sees this file. Thread-safe: no.
 class ReadinessNode {
  public:
-  /// The direction whose readiness is set; in the other one it is always ready, or never asked for.
+  /// The direction whose readiness is set; the other one is always ready, or never polled.
   enum class Direction : std::uint8_t { kReadable, kWritable };
 
   /// Makes it at `path` (an absolute path inside the testbed), replacing the file that is there. Throws

@@ -24,7 +24,7 @@ constexpr double kTe923Every_s = 33.0;
 constexpr double kTe923Reply_s = 0.05;       // from the request to the first report
 constexpr double kTe923Report_s = 0.01;      // from one report to the next
 constexpr double kTe923SplitReport_s = 0.3;  // with the fault
-constexpr double kTe923LateReply_s = 8.0;    // with the fault: longer than a host's time-out of 5 s
+constexpr double kTe923LateReply_s = 8.0;    // with the fault: longer than a host's timeout of 5 s
 constexpr unsigned kTe923ReadingsAt = 0x020001;
 constexpr double kMetrePerSecond_mph = 1.0 / 0.44704;
 
@@ -82,7 +82,7 @@ class Te923 final : public HidModel {
   }
 
   void reply(unsigned address) {
-    // The block: header, memory, check byte. Only the readings are more than empty memory here.
+    // The block: header, memory, check byte. Only the readings are written here; the rest is empty memory.
     Bytes block(33, 0x00);
     block[0] = 0x5A;
     if (address == kTe923ReadingsAt) std::copy(readings_.begin(), readings_.end(), block.begin() + 1);

@@ -30,9 +30,9 @@ class ProgramMemory {
   /// The memory that the pointer at `offset` points to; empty for a null pointer, for no bytes, or a program that has
   /// ended.
   ProgramMemory pointed_to(std::size_t offset, std::size_t size) const;
-  /// Writes as much as there is room for.
+  /// Writes as many bytes as fit.
   void write(std::size_t offset, std::span<const std::uint8_t> bytes) const;
-  /// Makes the pointer at `offset`, which has not been followed before, point to that memory.
+  /// Makes the pointer at `offset`, which was not followed before, point to that memory.
   void point_to(std::size_t offset, const ProgramMemory& target) const;
 
   template <class T>
@@ -61,7 +61,7 @@ class ProgramCall {
   ProgramCallKind kind() const noexcept { return kind_; }
   /// Of an ioctl.
   unsigned long request() const;
-  /// Of an ioctl: its argument, which is a pointer or a number. Of a read or a write: the buffer.
+  /// For an ioctl its argument, which is a pointer or a number; for a read or a write the buffer.
   ProgramMemory argument() const;
 
   void reply(long result) { finish(result, 0); }

@@ -59,7 +59,7 @@ struct UmockdevSimulator::State {
     const std::string usb_node = fmt::format("bus/usb/001/{:03}", device_number);
     const std::string hidraw_node = fmt::format("hidraw{}", index);
 
-    // The nodes first: a program that sees the device in sysfs can open it at once.
+    // The nodes first: a program that sees the device in sysfs can open it immediately.
     add_node<UsbfsNode>(socket, device, usb_node);
     if (is_hid) add_node<HidrawNode>(socket, device, hidraw_node);
 
@@ -168,7 +168,7 @@ struct UmockdevSimulator::State {
   UmockdevTestbed testbed;
   std::vector<core::FaultKind> known_faults;
   std::vector<std::unique_ptr<Socket>> sockets;
-  std::vector<std::unique_ptr<EmulatedNode>> gone;  // of unplugged devices, still open in a program
+  std::vector<std::unique_ptr<EmulatedNode>> gone;  // nodes of unplugged devices that a program still has open
   unsigned device_number = 1;                       // the root hub's
   unsigned hid_number = 0;
   std::optional<core::FaultKind> fault;

@@ -10,8 +10,8 @@
 namespace yuragi::simulators::usb {
 
 /// Simulated USB devices in a testbed of umockdev's: programs that run beside it in that testbed find them with libusb,
-/// and stations with hidapi's hidraw backend, as if they were plugged in. Unplugged, a device vanishes with its nodes,
-/// and returns with new ones; udev's listeners get a uevent for both.
+/// and stations with hidapi's hidraw backend, as if they were plugged in. An unplugged device disappears with its
+/// nodes, and returns with new ones; udev's listeners get a uevent each time.
 class UmockdevSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error if this program does not run in umockdev (see is_in_umockdev()).

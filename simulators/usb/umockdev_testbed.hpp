@@ -9,12 +9,12 @@ struct _UMockdevTestbed;  // NOLINT(bugprone-reserved-identifier): the name is G
 
 namespace yuragi::simulators::usb {
 
-/// True: this program runs with umockdev's library before the C library's, as a testbed and the programs that use it
-/// must.
+/// Returns true if this program runs with umockdev's library before the C library's, as a testbed and the programs that
+/// use it must.
 bool is_in_umockdev() noexcept;
 
 /// Starts this program anew, with the same arguments, under umockdev-wrapper (Debian: umockdev). Returns only by
-/// throwing std::runtime_error, saying what to install.
+/// throwing std::runtime_error, which names the package to install.
 [[noreturn]] void restart_in_umockdev();
 
 /// A separate /sys and /dev for this program and those that it starts, for the lifetime of this object. One at a time.

@@ -28,7 +28,7 @@ struct SetupPacket {
 struct Descriptors {
   Bytes device;                      ///< 18 bytes
   Bytes configuration;               ///< with interfaces, HID descriptors and end points behind it
-  Bytes hid_report;                  ///< of interface 0; empty: no HID device
+  Bytes hid_report;                  ///< of interface 0; empty: not an HID device
   std::vector<std::string> strings;  ///< ASCII; number 1 first
 };
 
@@ -44,8 +44,8 @@ class Device {
   virtual const Descriptors& descriptors() const = 0;
   virtual std::span<const core::FaultKind> known_faults() const = 0;
 
-  /// Advances to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
-  /// kSilence of the whole device are played by Port; wrong content is the device's own.
+  /// Advances to `time_s` after the start, in that wind. Called before all other functions for that moment. Port
+  /// plays kUnplug and kSilence of the whole device; the device itself plays wrong content.
   virtual void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) = 0;
 
   /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host receives, at most
@@ -53,10 +53,10 @@ class Device {
   virtual std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> data) = 0;
 
   /// The data that waits at an IN end point (its number without the direction bit), at most `max_size` bytes: one
-  /// interrupt report, or bulk data. Nullopt: the host has to wait (NAK).
+  /// interrupt report, or bulk data. Returns nullopt if the host has to wait (NAK).
   virtual std::optional<Bytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
 
-  /// Takes data that the host sends to an OUT end point. False: refused (a stall).
+  /// Takes data that the host sends to an OUT end point. Returns false if it refuses it (a stall).
   virtual bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;
 };
 

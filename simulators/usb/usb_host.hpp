@@ -20,7 +20,7 @@ class Host {
 
   Port& port() const noexcept { return port_; }
 
-  /// `transfer.id` is chosen here, and returned.
+  /// Sets and returns `transfer.id`.
   std::uint64_t submit(Transfer transfer, Then then) {
     transfer.id = ++last_id_;
     waiting_.emplace(transfer.id, std::move(then));
@@ -28,7 +28,7 @@ class Host {
     return last_id_;
   }
 
-  /// Drops a transfer that waits, without calling its function. False: it is not waiting.
+  /// Drops a transfer that waits, without calling its function. Returns false if it is not waiting.
   bool cancel(std::uint64_t id) {
     port_.cancel(id);
     return waiting_.erase(id) != 0;
@@ -51,7 +51,7 @@ class Host {
   }
 
  private:
-  static constexpr int kMaxRounds = 64;  // a device that never stops talking must not keep the others waiting
+  static constexpr int kMaxRounds = 64;  // a device that always has data must not keep the others waiting
 
   Port& port_;
   std::uint64_t last_id_ = 0;

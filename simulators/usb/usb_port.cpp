@@ -65,7 +65,7 @@ void Port::cancel_all() {
 
 std::vector<Outcome> Port::take_outcomes() {
   std::vector<Outcome> outcomes;
-  std::array<bool, 256> is_busy{};  // by end point address: one that waits keeps those behind it waiting
+  std::array<bool, 256> is_busy{};  // by end point address: a waiting transfer keeps those after it waiting
   for (auto transfer = waiting_.begin(); transfer != waiting_.end();) {
     bool& busy = is_busy[transfer->endpoint | (transfer->is_to_host && transfer->endpoint != 0 ? 0x80U : 0U)];
     std::optional<Outcome> outcome = busy ? std::nullopt : attempt(*transfer);

@@ -53,7 +53,7 @@ class Port {
   void submit(Transfer transfer);
   /// Drops a transfer that has no outcome yet; false: it is not waiting.
   bool cancel(std::uint64_t id);
-  /// Drops all transfers, when the host has gone.
+  /// Drops all transfers, when the host has disconnected.
   void cancel_all();
 
   /// The outcomes since the last call. Transfers to one end point complete in the order in which they were submitted.

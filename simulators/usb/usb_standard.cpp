@@ -38,7 +38,7 @@ std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::uint16_t>(byte_at(bytes, at) | (byte_at(bytes, at + 1) << 8U));
 }
 
-/// Calls `use(type, bytes)` for each descriptor inside a configuration, as far as their lengths make sense.
+/// Calls `use(type, bytes)` for each descriptor in a configuration, up to the first with an invalid length.
 template <class Use>
 void each_descriptor(std::span<const std::uint8_t> configuration, Use&& use) {
   while (configuration.size() >= 2 && configuration[0] >= 2 && configuration[0] <= configuration.size()) {
@@ -109,7 +109,7 @@ std::optional<Bytes> ControlPipe::control(const SetupPacket& setup, std::span<co
 }
 
 std::optional<Bytes> ControlPipe::standard(const SetupPacket& setup) {
-  // Reading and writing share no request number: one that goes the wrong way is refused.
+  // Requests to read and to write have different numbers: one in the wrong direction is refused.
   if (setup.is_to_host()) {
     switch (setup.request) {
       case kGetStatus:

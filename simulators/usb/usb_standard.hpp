@@ -11,7 +11,7 @@
 
 namespace yuragi::simulators::usb {
 
-/// An interface as the kernel shows it in sysfs, and a USB/IP server in its list.
+/// An interface, as the kernel lists it in sysfs, and a USB/IP server in its device list.
 struct Interface {
   std::uint8_t number = 0;
   std::uint8_t device_class = 0;
@@ -26,7 +26,7 @@ struct Endpoint {
   std::uint16_t max_packet_size = 0;
 };
 
-/// The fields of a device's descriptors. What they lack is zero.
+/// The fields of a device's descriptors. Missing fields are zero.
 struct Summary {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
@@ -40,13 +40,13 @@ struct Summary {
   std::vector<Interface> interfaces;
   std::vector<Endpoint> endpoints;
 
-  /// The end point of that address; nullptr: there is none.
+  /// Returns the end point of that address; nullptr if there is none.
   const Endpoint* endpoint(std::uint8_t address) const;
 };
 
 Summary summary_of(const Descriptors& descriptors);
 
-/// The 8 bytes that begin a control transfer, read.
+/// Decodes the 8 bytes that begin a control transfer.
 SetupPacket usb_setup_of(std::span<const std::uint8_t, 8> bytes);
 
 /// The control pipe of a simulated device: answers the standard requests (USB 2.0 specification, 9.4) from its
@@ -56,10 +56,10 @@ class ControlPipe {
   /// `device` must outlive this.
   explicit ControlPipe(Device& device);
 
-  /// True: a request that is answered here and not passed to the device.
+  /// Returns true if a request is answered here and not passed to the device.
   static bool is_standard(const SetupPacket& setup) noexcept { return (setup.request_type & 0x60U) == 0; }
 
-  /// As Device::control(), and never more than `setup.length` bytes.
+  /// Like Device::control(), but never more than `setup.length` bytes.
   std::optional<Bytes> control(const SetupPacket& setup, std::span<const std::uint8_t> data);
 
   /// The configuration that the host has set; 0: none yet.

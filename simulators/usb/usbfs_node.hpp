@@ -23,11 +23,11 @@ class UsbfsNode final : public EmulatedNode {
   void unplug() override;
 
  private:
-  /// What the program calls a URB.
+  /// A URB of the program.
   struct Urb {
     ProgramMemory memory;  // its struct usbdevfs_urb
     ProgramMemory buffer;
-    std::size_t header_size = 0;  // of the buffer: a control transfer's setup
+    std::size_t header_size = 0;  // size of a control transfer's setup at the beginning of the buffer
     std::uint64_t transfer = 0;
   };
 

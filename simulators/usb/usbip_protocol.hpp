@@ -46,7 +46,7 @@ struct UsbipUnlink {
 
 using UsbipMessage = std::variant<UsbipListRequest, UsbipImportRequest, UsbipSubmit, UsbipUnlink>;
 
-/// The message at the beginning of some bytes, and its size; none, and 0, if more bytes are needed.
+/// The message at the beginning of some bytes, and its size; nullopt and 0 if more bytes are needed.
 struct UsbipTaken {
   std::optional<UsbipMessage> message;
   std::size_t size = 0;
@@ -55,8 +55,8 @@ struct UsbipTaken {
 /// The longest transfer that is accepted.
 inline constexpr std::uint32_t kUsbipLongestTransfer = 64 * 1024;
 
-/// Reads the first message. The failure's text is why these bytes cannot be USB/IP, or what no simulated device
-/// supports; the connection must then be closed.
+/// Reads the first message. The failure's text states why these bytes cannot be USB/IP, or which request no simulated
+/// device supports; the connection must then be closed.
 Result<UsbipTaken, Failure> take_usbip_message(UsbipPhase phase, std::span<const std::uint8_t> bytes);
 
 /// A device that is offered.
@@ -67,7 +67,7 @@ struct UsbipOffer {
 };
 
 Bytes usbip_list_reply(std::span<const UsbipOffer> offers);
-/// `offer` is nullptr if there is no such device, or if another host has it (`is_taken`).
+/// `offer` is nullptr if the device does not exist, or if another host has it (`is_taken`).
 Bytes usbip_import_reply(const UsbipOffer* offer, bool is_taken);
 
 /// Statuses of transfers: the kernel's error numbers, negative.

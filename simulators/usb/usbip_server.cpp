@@ -18,7 +18,7 @@ namespace {
 namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
-/// A host that leaves this many bytes unread has gone, or is hostile.
+/// A host that leaves this many bytes unread is disconnected: it has hung, or is hostile.
 constexpr std::size_t kMaxUnread = std::size_t{1024} * 1024;
 constexpr std::size_t kMaxClients = 64;
 
@@ -143,7 +143,7 @@ struct UsbipServer::State {
                                    .setup = submit.setup,
                                    .data = submit.data,
                                    .max_size = submit.length});
-    // At once, so that an unlink later in the same bytes finds the transfer answered or waiting.
+    // Now, so that an unlink later in the same bytes finds the transfer answered or waiting.
     send_outcomes(client);
   }
 
@@ -176,7 +176,7 @@ struct UsbipServer::State {
   std::vector<core::FaultKind> known_faults;
   std::vector<std::unique_ptr<Client>> clients;
   std::optional<core::FaultKind> fault;
-  std::string trouble;  // what was wrong with the last connection that was closed
+  std::string trouble;  // the error of the last connection that was closed
 };
 
 UsbipServer::UsbipServer(const std::string& host, std::uint16_t port, std::vector<std::unique_ptr<Port>> ports)

@@ -131,7 +131,7 @@ class Wmr300 final : public HidModel {
   }
 
   bool has_begun_ = false;
-  double received_s_ = 0.0;  ///< when the host's last message came
+  double received_s_ = 0.0;  ///< time of the host's last message
   std::array<double, kPacketKinds.size()> next_s_{};
   double gust_m_s_ = 0.0;  ///< since the last wind packet
 };

@@ -228,7 +228,7 @@ gain = 1.0          # from the institute
             (("zero", "--config", config, "--sensor", "cellar", "--yes"), 64, "there are: roof, mast"),
             (("zero", *base), 64, "there is no terminal for questions"),
             (("zero", *base, "--yes", "--recording", log), 65, "there are: attic"),
-            (("zero", *base, "--yes", "--recording", self.path("none.windlog")), 66, "no such recording"),
+            (("zero", *base, "--yes", "--recording", self.path("none.windlog")), 66, "the recording does not exist"),
             (("zero", *base, "--yes", "--part", "1,2"), 64, "--part needs --recording"),
             (("north", *base, "--yes", "--connect", NOBODY), 64, "give --bearing"),
             (("span", *base, "--yes"), 64, "the known wind is missing"),

@@ -473,7 +473,7 @@ port = {port}
 
         nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
         self.assertEqual(nobody.returncode, 69)
-        self.assertIn("no device answers", nobody.stderr)
+        self.assertIn("no device replies", nobody.stderr)
         self.assertEqual(run("sensors", "probe", "modbus", simulator.address(), "--id", "0-3").returncode, 64)
 
     def test_a_probe_of_a_serial_line_can_be_interrupted(self):
@@ -789,7 +789,7 @@ port = {port}
         for command in (["check-config", path], ["run", "--listen", "127.0.0.1:0", "--config", path]):
             done = run(*command)
             self.assertEqual(done.returncode, 78, done.stderr)
-            self.assertIn(path + ":2:22: wind.fallback_recording: /no/such.windlog: there is no such recording", done.stderr)
+            self.assertIn(path + ":2:22: wind.fallback_recording: /no/such.windlog: the recording does not exist", done.stderr)
 
     def test_a_recording_that_is_not_there_ends_with_66(self):
         self.assertEqual(run("replay", self.file("none.windlog")).returncode, 66)

@@ -204,7 +204,7 @@ class FieldCommand(unittest.TestCase):
         self.assertIn("--stress", self.refused(64, "--dims", 3, "--stress", 0.7))
         self.assertIn("--windlog", self.refused(64, "--windlog", "some.windlog", "--stress", 0))
         self.assertIn("GB", self.refused(64, "--size", 4000, "--frames", 100000))
-        self.assertIn("no such recording", self.refused(66, "--windlog", "nowhere.windlog"))
+        self.assertIn("the recording does not exist", self.refused(66, "--windlog", "nowhere.windlog"))
         self.assertIn("--windlog", self.refused(64, "--windlog", "some.windlog", "--speed", 4))
         self.assertIn(".png or .svg", self.refused(64, "--plot", "field.gif"))
 

@@ -212,7 +212,7 @@ class Film(unittest.TestCase):
                                   (64, "--connect", ("--connect", "127.0.0.1:1", "--out", "-")),
                                   (78, "scenes.toml", ("--config", "no/scenes.toml", "--out", "-"))):
             self.assertIn(words, self.make(*more, code=code)[1])
-        self.assertIn("no such recording", self.make("--render", self.folder / "none.windlog", "--out", "-", code=66)[1])
+        self.assertIn("the recording does not exist", self.make("--render", self.folder / "none.windlog", "--out", "-", code=66)[1])
 
     def test_a_film_that_fails_leaves_no_folder(self):
         folder = self.folder / "takes" / "first"

@@ -166,7 +166,7 @@ class Secrets(unittest.TestCase):
         done = run("clean-secrets", self.file("none.windlog"), live, odd, old)
         self.assertEqual(done.returncode, 66, "of the first that failed")
         self.assertEqual(done.stdout, f"{odd}: 1 secret taken out\n{old}: 2 secrets taken out\n")
-        self.assertIn("none.windlog: there is no such recording", done.stderr)
+        self.assertIn("none.windlog: the recording does not exist", done.stderr)
         self.assertRegex(done.stderr, r"another program \(process \d+\) records to \S*/live.windlog: end it, or choose another file")
         self.assertIn("odd.windlog: 1 configuration cannot be read as TOML", done.stderr)
         self.assertNotIn(PASSWORD, done.stdout + done.stderr)

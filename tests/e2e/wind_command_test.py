@@ -179,14 +179,14 @@ class WindCommand(unittest.TestCase):
 
     def test_says_what_is_wrong(self):
         for arguments, code, text in (
-            (["/no/such.windlog", "-o", "-"], 66, "no such recording"),
+            (["/no/such.windlog", "-o", "-"], 66, "the recording does not exist"),
             ([self.log, "-o", "-", "--gap", "9,3"], 64, "allowed: FROM,TO"),
             ([self.log, "-o", "-", "--rate", "0"], 64, "--rate"),
             ([self.log, "-o", "-", "--place", "3"], 64, "allowed: X,Z"),
             ([self.log, "-o", "-", "--place", "3,nan"], 64, "allowed: X,Z"),
             ([self.log, "-o", "-", "--lead", "3"], 64, "--sensor-place"),
             ([self.log, "-o", "-", "--sensor-place", "0,0", "--also", self.log], 64, "allowed: FILE.windlog@X,Z"),
-            ([self.log, "-o", "-", "--sensor-place", "0,0", "--also", "/no/such.windlog@1,2"], 66, "no such recording"),
+            ([self.log, "-o", "-", "--sensor-place", "0,0", "--also", "/no/such.windlog@1,2"], 66, "the recording does not exist"),
             ([self.log, "-o", "/no/such/folder/a.csv"], 73, "/no/such/folder"),
         ):
             run = yuragi("wind", *arguments)

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxSide_px = 16384;
 
-/// Reads "1280x720"; returns what is wrong with it, or an empty text.
+/// Reads "1280x720". Returns the error, or an empty text.
 std::string read_size(const std::string& text, picture::ViewerOptions& options) {
   const char* const end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, options.width_px);
@@ -30,13 +30,13 @@ std::string read_size(const std::string& text, picture::ViewerOptions& options) 
   return "'" + text + "' is not a size: give WIDTHxHEIGHT in pixels, such as 1920x1080";
 }
 
-/// What is wrong with the name of a picture file, or an empty text.
+/// Returns the error in the name of a picture file, or an empty text.
 std::string check_picture_name(const std::string& name) {
   if (picture::picture_format(name)) return {};
   return "'" + name + "' is not the name of a picture that can be written: it has to end in .png, .jpg or .jpeg";
 }
 
-/// A text of nothing but numbers with commas between that is no view is no camera's name either, but a mistake.
+/// A text of numbers and commas that is not a valid view is rejected, and not taken for a camera's name.
 std::string check_camera(const std::string& text) {
   const bool is_numbers = text.find_first_not_of("0123456789.,+-eE ") == std::string::npos;
   if (!text.empty() && (!is_numbers || text.find(',') == std::string::npos || picture::read_camera_view(text)))
@@ -54,12 +54,13 @@ void add_film_options(CLI::App& app, picture::ViewerOptions& options) {
                             "--dark-when-closed", "--output", "--test-card", "--age"}) {
     render->excludes(other);
   }
-  auto* const out = app.add_option("--out", options.out,
-                                   "FILE.mp4 (by ffmpeg), a folder for 000001.png and so on, or - for the bytes of one "
-                                   "picture after the other (RGB, 3 bytes a pixel) on standard output")
-                        ->needs(render)
-                        ->check(film::check_film_name)
-                        ->group(film);
+  auto* const out =
+      app.add_option("--out", options.out,
+                     "FILE.mp4 (needs ffmpeg), a folder for 000001.png and so on, or - for standard output "
+                     "(RGB, 3 bytes a pixel)")
+          ->needs(render)
+          ->check(film::check_film_name)
+          ->group(film);
   render->needs(out);
   app.add_option("--fps", options.fps, "Pictures a second of the recording's time")
       ->needs(render)
@@ -76,12 +77,12 @@ void add_film_options(CLI::App& app, picture::ViewerOptions& options) {
       ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.001, 1e6))
       ->group(film);
-  app.add_flag("--as-recorded", options.is_as_recorded, "With the configuration and all sensors of the recording")
+  app.add_flag("--as-recorded", options.is_as_recorded, "Use the configuration and all sensors of the recording")
       ->needs(render)
       ->excludes("--config")
       ->group(film);
   app.add_flag("--draw-nothing", options.draws_nothing,
-               "All but the drawing: black pictures, on a machine without OpenGL or to test the rest")
+               "Write black pictures, on a machine without OpenGL or for tests")
       ->needs(render)
       ->group(film);
 }
@@ -96,51 +97,45 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
   app.add_option("--samples", options.samples,
                  "Samples per pixel (antialiasing); default 4, or 1 in a window without graphics hardware")
       ->check(CLI::Range(1, 16));
-  // Not add_flag(): CLI11 counts into an optional, and sets it to 0 at once.
+  // Not add_flag(): with an optional, CLI11 sets it to 0 immediately.
   app.add_flag_function(
       "--overlay,!--no-overlay", [&options](std::int64_t count) { options.overlay = count > 0; },
       "Show wind, sensors and stream over the picture (default in windows)");
   app.add_flag("--panel", options.has_panel,
                "Show the panel that lists and sets the values of the daemon's [look] and scenes (P)");
   app.add_option("--show", options.shown,
-                 "Show this from the start, too: help (F1), profiler (F3) or wind (F4); repeatable")
+                 "Also show this from the start: help (F1), profiler (F3) or wind (F4); repeatable")
       ->allow_extra_args(false)
       ->type_name("PANEL")
       ->check(CLI::IsMember({"help", "profiler", "wind"}));
-  app.add_option("--scale", options.scale, "How large the overlay's texts are; default: as suits the monitor")
+  app.add_option("--scale", options.scale, "Scale of the overlay's texts; default: chosen for the monitor")
       ->check(CLI::Range(0.25, 8.0));
   app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
   app.add_flag("--dark-when-closed", options.is_dark_when_closed,
                "Fade to black outside of the daemon's opening hours ([shaping] hours)");
   app.add_option("--monitor", options.monitor, "Which screen to use, counted from 0")->check(CLI::NonNegativeNumber);
-  auto* const config =
-      app.add_option(
-             "--config", options.config,
-             "A configuration of Yuragi: its [[output]] selects the monitors and how they show the picture; of a film "
-             "(--render) it has the scenes")
-          ->type_name("FILE.toml");
+  auto* const config = app.add_option("--config", options.config,
+                                      "A configuration of Yuragi, for its [[output]] or, with --render, for its scenes")
+                           ->type_name("FILE.toml");
   app.add_option("--output", options.output, "The name of the [[output]] to show; default: the first")
       ->needs(config)
       ->type_name("NAME");
-  app.add_flag("--test-card", options.has_test_card,
-               "Show lines, circles and greys in place of the picture, to set up an [[output]]; needs no daemon");
-  app.add_flag("--age", options.says_age,
-               "Say every 10 s, and at the end, how old the sensor's reading was when its picture was shown");
+  app.add_flag("--test-card", options.has_test_card, "Show a test picture to set up an [[output]]; needs no daemon");
+  app.add_flag("--age", options.logs_age,
+               "Log the age of the sensor's reading when its picture was shown, every 10 s and at the end");
   app.add_flag("--list-monitors", options.lists_monitors, "List the monitors by number and name, and end");
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");
-  app.add_option(
-         "--look", options.look,
-         "KEY=VALUE: another light or weather than the daemon's [look], such as time=06:30 or clouds=1; repeatable")
+  app.add_option("--look", options.look,
+                 "KEY=VALUE: overrides a value of the daemon's [look], such as time=06:30 or clouds=1; repeatable")
       ->allow_extra_args(false)
       ->check([](const std::string& edit) {
         const auto look = look::edited({}, std::span(&edit, 1));
         return look ? std::string() : look.error().name + " " + look.error().message;
       });
   app.add_option("--camera", options.camera,
-                 "NAME of one of the daemon's cameras ([[camera]]), or HEADING,PITCH,DISTANCE: direction of view "
-                 "(degrees, 0 north, 90 east), angle downward (degrees) and distance (metres); default: the daemon's "
-                 "cameras by the time of day, or where it has none chosen to suit the scene")
+                 "NAME of a [[camera]] of the daemon, or HEADING,PITCH,DISTANCE: direction of view (degrees, 0 north, "
+                 "90 east), angle downward (degrees), distance (metres); default: by the time of day")
       ->check(check_camera);
 
   const std::string picture = "Write a picture instead of opening a window";
@@ -153,13 +148,13 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000))
       ->group(picture);
-  app.add_option("--at", options.at_s, "Take it this long after the first pose came: 90 (seconds), 5min")
+  app.add_option("--at", options.at_s, "Take it this long after the first pose: 90 (seconds), 5min")
       ->needs(screenshot)
       ->type_name("TIME")
       ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.0, 1e6))
       ->group(picture);
-  app.add_option("--wait", options.wait_s, "Give up when no pose has come after this time: 90 (seconds), 5min")
+  app.add_option("--wait", options.wait_s, "Give up after this time without a pose: 90 (seconds), 5min")
       ->needs(screenshot)
       ->capture_default_str()
       ->type_name("TIME")
@@ -170,9 +165,9 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
   add_film_options(app, options);
 
   app.footer(
-      "In the window: F1 lists all keys; drag to turn (left button) or move (right), scroll to zoom. If the stream is\n"
-      "interrupted, its last seconds are replayed until it returns. The panel may change values of a daemon with a\n"
-      "token_file if the environment variable YURAGI_TOKEN_FILE names the file of its token.\n"
+      "In the window: F1 lists all keys; drag to turn (left button) or move (right), scroll to zoom. If the stream\n"
+      "is interrupted, its last seconds are replayed until it returns. The panel can change values of a daemon with a\n"
+      "token_file if the environment variable YURAGI_TOKEN_FILE names a copy of that file.\n"
       "\n"
       "Examples:\n"
       "  yuragi run &                                    the daemon, with a synthetic wind\n"
@@ -180,22 +175,17 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
       "  yuragi-viewer --config wall.toml --test-card    set up the monitors and projectors of its [[output]]\n"
       "  yuragi-viewer --screenshot now.png              a picture; needs no screen\n"
-      "  yuragi-viewer --camera night                    by one of the daemon's cameras, whatever the hour\n"
+      "  yuragi-viewer --camera night                    by one of the daemon's cameras, at any hour\n"
       "  yuragi-viewer --render storm.windlog --out storm.mp4 --size 1920x1080 --fps 60 --duration 20\n"
       "  yuragi-viewer --render storm.windlog --config garden.toml --scene flag --look quality=low --out pictures\n"
       "\n"
-      "A film takes every tick of the recording, however long a picture takes, and draws all of each with "
-      "--look quality=high\n"
-      "unless another is asked for. The same recording, configuration and graphics driver give the same pictures, bit "
-      "for bit.\n"
+      "A film shows every tick of the recording, however long a picture takes, in full detail (--look quality=high)\n"
+      "unless another quality is given. The same recording, configuration and driver give the same pictures.\n"
       "\n"
-      "Exit code 0: done; 64: wrong command line; 66: the configuration cannot be read; 69: no daemon answers, "
-      "nothing\n"
-      "to draw on, a monitor that is not there, or no ffmpeg; 73: the picture or film cannot be written; 75: the "
-      "graphics\n"
-      "card was reset, to be started again; 78: a mistake in the configuration's outputs; 130: a film was interrupted. "
-      "Of\n"
-      "a recording that cannot be played, those of `yuragi replay`.");
+      "Exit code 0: done; 64: wrong command line; 66: the configuration cannot be read; 69: no daemon replies, no\n"
+      "display or graphics driver, a monitor that is not connected, or no ffmpeg; 73: the picture or film cannot be\n"
+      "written; 75: the graphics card was reset: start again; 78: a mistake in the configuration's outputs; 130: a\n"
+      "film was interrupted. For a recording that cannot be played, the codes of `yuragi replay`.");
 }
 
 }  // namespace yuragi::viewer::app

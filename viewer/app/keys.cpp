@@ -41,7 +41,7 @@ std::string name_of_key(int code) {
   if (code >= GLFW_KEY_F1 && code <= GLFW_KEY_F25) return "F" + std::to_string(code - GLFW_KEY_F1 + 1);
   if (code == GLFW_KEY_SPACE) return "Space";
   if (code == GLFW_KEY_ESCAPE) return "Esc";
-  return {static_cast<char>(code)};  // GLFW numbers letters and digits as ASCII does
+  return {static_cast<char>(code)};  // GLFW uses ASCII codes for letters and digits
 }
 
 std::string_view text_of(Action action) {

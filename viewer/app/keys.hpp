@@ -7,7 +7,7 @@
 
 namespace yuragi::viewer::app {
 
-/// What a person asks for with a key.
+/// An action that a key starts.
 enum class Action : unsigned char {
   kHelp,
   kInfo,
@@ -26,21 +26,21 @@ enum class Action : unsigned char {
   kClose,
 };
 
-/// A key and what it does. The one list of them: the window looks keys up in it, and the help writes it.
+/// A key and what it does. The only list of keys: the window and the help use it.
 struct Key {
-  int code;  ///< as GLFW numbers it: by its place on an American keyboard
+  int code;  ///< GLFW's number: the key's position on an American keyboard
   Action action;
   int number = 0;  ///< of the camera, from 1
 };
 std::span<const Key> all_keys();
 
-/// What a key does; nothing where it does nothing.
+/// Returns the action of a key; nullopt if it has none.
 std::optional<Key> key_of(int code);
 
-/// What is written on a key of all_keys(): "F1", "Space", "C".
+/// Returns the label of a key of all_keys(): "F1", "Space", "C".
 std::string name_of_key(int code);
 
-/// What an action is, for a person.
+/// Returns the description of an action, for a person.
 std::string_view text_of(Action action);
 
 /// A line of the help.
@@ -48,8 +48,8 @@ struct KeyHelp {
   std::string keys;  ///< "F5, F11"
   std::string_view text;
 };
-/// The lines of the help: one for each action, in the order of all_keys(). `number`: of the line, from 0; nothing
-/// behind the last.
+/// Returns a line of the help: one for each action, in the order of all_keys(). `number`: of the line, from 0; nullopt
+/// after the last.
 std::optional<KeyHelp> key_help(std::size_t number);
 
 }  // namespace yuragi::viewer::app

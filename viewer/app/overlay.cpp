@@ -21,7 +21,7 @@ double overlay_scale(double content_scale, const PixelSize& picture, std::option
 
 Overlay::Overlay(GLFWwindow* window) : has_window_(window != nullptr) {
   ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // nothing is kept on disk
+  ImGui::GetIO().IniFilename = nullptr;  // no settings file on disk
   if (has_window_) ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init(std::string(gl::glsl_version_line()).c_str());
 }
@@ -29,7 +29,7 @@ Overlay::Overlay(GLFWwindow* window) : has_window_(window != nullptr) {
 void Overlay::set_scale(double scale) {
   if (scale == scale_) return;
   scale_ = scale;
-  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // among them the font's picture, which is made again
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // also deletes the font's texture, which is made again
   OverlayPanels::set_scale(scale);
 }
 
@@ -60,7 +60,8 @@ void Overlay::draw(const PixelSize& size, double scale, const OverlayFacts& fact
     io.DisplaySize = picture;
     io.DisplayFramebufferScale = ImVec2(1.0F, 1.0F);
   }
-  // Nobody sees a panel before its size is known: a single picture, and the first of a film, has it in its place.
+  // A panel is placed only after its size is known: so a single picture, and the first of a film, is drawn again until
+  // it is.
   while (!panels_.is_laid_out(facts)) {
     ImGui::NewFrame();
     panels_.draw(facts);

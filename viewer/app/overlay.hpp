@@ -7,14 +7,14 @@
 
 namespace yuragi::viewer::app {
 
-/// How large texts are, compared with those of a picture of 1080 rows: as the monitor reports it, but on a monitor of
-/// high resolution that reports nothing, large enough to be read. `asked`: by a person.
+/// Returns the scale of texts, relative to those of a picture of 1080 rows: the monitor's own; if a monitor of high
+/// resolution reports none, one that is large enough to read. `asked`: by a person.
 double overlay_scale(double content_scale, const PixelSize& picture, std::optional<double> asked);
 
 /// Small texts over the picture, drawn by OpenGL. One at a time; needs a current context.
 class Overlay {
  public:
-  /// `window`: null where there is none.
+  /// `window`: null if there is none.
   explicit Overlay(GLFWwindow* window);
   ~Overlay();
   Overlay(const Overlay&) = delete;
@@ -23,7 +23,7 @@ class Overlay {
   /// Draws over the framebuffer that is bound, of this size. `scale`: of all texts, overlay_scale().
   void draw(const PixelSize& size, double scale, const OverlayFacts& facts);
 
-  /// Is what a person does with the mouse, or types, meant for a panel?
+  /// Returns true if mouse input or typed text is meant for a panel.
   bool takes_mouse() const;
   bool takes_keys() const;
 

@@ -11,13 +11,13 @@ namespace {
 /// A part of a line: of a row of columns, or of a column of panels.
 struct Piece {
   float wanted = 0.0F;
-  float anchor = 0.0F;  // where it would be, of the line: 0 at its beginning, 1 at its end
+  float anchor = 0.0F;  // preferred position along the line: 0 at its beginning, 1 at its end
   float at = 0.0F;
   float length = 0.0F;
 };
 
-/// Places pieces in their order, with `gap` between. Where there is not enough room, short ones are whole and the
-/// others equally long.
+/// Places pieces in their order, with `gap` between. If there is not enough room, short ones are whole and the others
+/// equally long.
 void place_along(float begin, float length, float gap, std::span<Piece> pieces) {
   if (pieces.empty()) return;
   float left = std::max(0.0F, length - gap * static_cast<float>(pieces.size() - 1));
@@ -33,7 +33,7 @@ void place_along(float begin, float length, float gap, std::span<Piece> pieces) 
     piece.at = std::max(first, std::floor(begin + piece.anchor * (length - piece.length)));
     first = piece.at + piece.length + gap;
   }
-  // From the last one back: what the anchors have pushed over the end.
+  // From the last one back: moves pieces that the anchors have pushed over the end.
   float end = begin + length;
   for (std::size_t i = pieces.size(); i-- > 0;) {
     pieces[i].at = std::min(pieces[i].at, end - pieces[i].length);
@@ -41,12 +41,12 @@ void place_along(float begin, float length, float gap, std::span<Piece> pieces) 
   }
 }
 
-/// Where a panel would be, and in which column it is.
+/// A panel's preferred place, and its column.
 struct Home {
   PanelId panel;
   float across;  // as Piece::anchor
   float down;
-  std::array<std::size_t, 3> column;  // of three, of two, of one
+  std::array<std::size_t, 3> column;  // in layouts of three, two and one columns
 };
 /// From the top down.
 constexpr std::array<Home, 5> kHomes{{{PanelId::kTexts, 0.0F, 0.0F, {0, 0, 0}},
@@ -113,7 +113,7 @@ OfPanels<PanelRect> OverlayLayout::place(const PanelSize& picture, float gap, co
                  .size = {.width = std::max(0.0F, picture.width - 2.0F * gap),
                           .height = std::max(0.0F, picture.height - 2.0F * gap)}};
   const PanelRect whole = room;
-  // Words have the whole width, and what is below the others.
+  // These texts have the full width, and so do the panels below them.
   for (const PanelId words : {PanelId::kPause, PanelId::kNotice}) {
     const PanelSize& size = wanted[index_of(words)];
     if (size.is_empty()) continue;
@@ -137,7 +137,7 @@ OfPanels<PanelRect> OverlayLayout::place(const PanelSize& picture, float gap, co
   }
   places = tried[arrangement_];
 
-  // A notice is in the middle where nothing else is.
+  // A notice is in the middle if the middle is free.
   PanelRect& notice = places[index_of(PanelId::kNotice)];
   PanelRect middle = notice;
   middle.y = std::floor(whole.y + 0.5F * (whole.size.height - middle.size.height));

@@ -12,7 +12,7 @@ inline constexpr std::size_t kPanelCount = 7;
 template <class Value>
 using OfPanels = std::array<Value, kPanelCount>;
 
-/// In pixels, as ImGui counts them.
+/// Size in ImGui's pixels.
 struct PanelSize {
   float width = 0.0F;
   float height = 0.0F;
@@ -24,10 +24,9 @@ struct PanelRect {
   PanelSize size;
 };
 
-/// The places of the overlay's panels, which never overlap. A panel that is alone has its usual place: texts upper
-/// left, help in the middle, profile lower left, values and trace on the right. Where they do not fit beside each other
-/// they share the room in three columns, two or one, whichever cuts them least. Notice and pause are never narrowed for
-/// others.
+/// The places of the overlay's panels, which never overlap. Each panel has its usual place (texts upper left, help in
+/// the middle, profile lower left, values and trace on the right). If they do not fit beside each other, they are put
+/// into three columns, two or one, whichever cuts them least. Notice and pause are never narrowed for others.
 class OverlayLayout {
  public:
   /// `wanted`: the sizes that show everything; empty: not shown, and its rectangle is empty. `gap`: around the
@@ -35,7 +34,7 @@ class OverlayLayout {
   OfPanels<PanelRect> place(const PanelSize& picture, float gap, const OfPanels<PanelSize>& wanted);
 
  private:
-  std::size_t arrangement_ = 0;  // of columns: kept while no other is much better, so that panels do not jump
+  std::size_t arrangement_ = 0;  // columns; changed only if another number is much better: panels do not jump
 };
 
 }  // namespace yuragi::viewer::app

@@ -32,15 +32,15 @@ const ImVec4 kWarn(1.0F, 0.78F, 0.36F, 1.0F);
 constexpr float kReasonWidthInLetters = 24.0F;
 constexpr float kNoticeWidthInLetters = 32.0F;
 constexpr float kNoticeScale = 1.4F;
-constexpr float kNoticeOpacity = 0.85F;  // of what is behind its words
+constexpr float kNoticeOpacity = 0.85F;  // opacity of the background of its text
 
-/// As wide as its texts, also in a window that is not.
+/// As wide as its texts, even if the window is narrower.
 constexpr ImGuiTableFlags kTableOfTexts =
     ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX | ImGuiTableFlags_NoKeepColumnsVisible;
 
 constexpr double kArrowFullSpeed_m_s = 12.0;  // as long as the compass is wide
 
-/// A font that most systems have; otherwise ImGui's own.
+/// A font that most systems have; if it is missing, ImGui's own is used.
 void load_font(double scale) {
   constexpr std::array kFonts = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
                                  "/usr/share/fonts/truetype/noto/NotoSans-Regular.ttf",
@@ -112,7 +112,7 @@ void draw_compass(const wind::State& wind, double heading_deg, float radius) {
   list->AddTriangleFilled(tip, beside(26.0, radius * 0.30F), beside(-26.0, radius * 0.30F), kArrow);
 }
 
-/// Is this true of every sensor that has sent a reading, and is there one?
+/// Returns true if at least one sensor has sent a reading, and all that have fulfil the condition.
 template <class Property>
 bool is_true_of_all_that_speak(const wire::Sensors* sensors, Property property) {
   if (sensors == nullptr) return false;
@@ -151,7 +151,7 @@ void write_wind(const OverlayFacts& facts, float scale) {
   ImGui::EndGroup();
 }
 
-/// A line for a sensor, and under it what is wrong and what to do about it.
+/// A line for a sensor and, below it, what is wrong and how to correct it.
 void write_sensor(const wire::SensorStatus& sensor) {
   const std::string trouble = trouble_of(sensor);
   std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, name_of(sensor.state));
@@ -176,7 +176,7 @@ void write_shaping(const OverlayFacts& facts) {
   }
 }
 
-/// Where the sun is, the weather, and what the quality leaves out.
+/// The place of the sun, the weather, and what the quality omits.
 void write_look(const OverlayFacts& facts) {
   if (facts.sky == nullptr) return;
   const light::SkyPlace& sun = facts.sky->sun;
@@ -212,7 +212,7 @@ void write_stream(const OverlayFacts& facts) {
   write(kQuiet, fmt::format("{} nodes, {:.0f} pictures/s", facts.nodes, facts.pictures_per_s));
 }
 
-/// The scenes that are there, and how far the others have faded.
+/// The scenes, and the opacity of those that fade.
 void write_scenes(const OverlayFacts& facts) {
   for (std::size_t i = 0; i < std::min(facts.scenes.size(), facts.opacities.size()); ++i) {
     const float opacity = facts.opacities[i];
@@ -257,7 +257,7 @@ void draw_help() {
   write(kQuiet, "Drag to turn (left button) or to move (right), scroll to come nearer.");
 }
 
-/// A wall that somebody has stopped must not look like one that is still.
+/// A paused wall must be distinguishable from one that stands still.
 void draw_pause() {
   write(kWarn, "paused; Space goes on");
 }
@@ -330,7 +330,7 @@ void draw_wind_trace(const WindTrace& trace) {
   write(kQuiet, bands.empty() ? "its spectrum comes after 8 s" : "its spectrum: 1/60 to 4 Hz, 1e-4 to 100 m\u00b2/s");
 }
 
-/// What is wrong stands in the first line.
+/// The first line states what is wrong.
 void draw_notice(const std::string& notice) {
   ImGui::SetWindowFontScale(kNoticeScale);
   const float room = ImGui::GetIO().DisplaySize.x - 2.0F * (ImGui::GetCursorPosX() + margin());
@@ -374,7 +374,7 @@ void OverlayPanels::set_scale(double scale) {
   ImGui::GetStyle() = style;
 }
 
-/// By ImGui, with the size of all of the contents.
+/// Called by ImGui with the size of the window's content.
 void OverlayPanels::set_size(ImGuiSizeCallbackData* data) {
   Place& place = *static_cast<Place*>(data->UserData);
   place.wanted = {.width = data->DesiredSize.x, .height = data->DesiredSize.y};

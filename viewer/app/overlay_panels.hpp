@@ -25,36 +25,36 @@ struct OverlayFacts {
   wind::State wind;
   stream::Playback playback = stream::Playback::kNothing;
   stream::Status stream;
-  const wire::Sensors* sensors = nullptr;  ///< null: none has come yet
+  const wire::Sensors* sensors = nullptr;  ///< null: none received yet
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;
   std::span<const wire::SceneModel* const> scenes;
   std::span<const float> opacities;              ///< one a scene
   const light::Sky* sky = nullptr;               ///< null: not known
-  look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
+  look::Quality quality = look::Quality::kHigh;  ///< quality of the picture
   pace::DrawnPart drawn;                         ///< how much of it
-  int refreshes = 1;                             ///< of the display, for each picture
-  double heading_deg = 0.0;                      ///< of the camera: up on the compass
-  std::string age;                               ///< of the reading, age_text(); empty: none
-  std::string camera;                            ///< which it is, for a person; empty: there is but one
+  int refreshes = 1;                             ///< refreshes of the display per picture
+  double heading_deg = 0.0;                      ///< of the camera: the compass has it at the top
+  std::string age;                               ///< age of the reading, age_text(); empty: unknown
+  std::string camera;                            ///< the camera's name, for a person; empty: there is only one camera
   bool has_help = false;                         ///< of all keys
   bool is_paused = false;
-  std::string notice;                     ///< what is wrong and what to do, over all else; empty: none
-  const WindTrace* wind_trace = nullptr;  ///< null: it is not shown
-  const std::vector<gl::PassClock::Pass>* passes = nullptr;  ///< of the last picture; null: they are not shown
+  std::string notice;  ///< what is wrong and what to do, drawn over everything else; empty: no notice
+  const WindTrace* wind_trace = nullptr;                     ///< null: it is not shown
+  const std::vector<gl::PassClock::Pass>* passes = nullptr;  ///< of the last picture; null: not shown
   std::span<const float> picture_times_ms;                   ///< of the last pictures, the oldest first
-  bool has_texts = true;                                     ///< otherwise nothing of the above is shown
-  Panel* panel = nullptr;  ///< with handles that a person can move; null: it is not shown
+  bool has_texts = true;                                     ///< if false, all of the above is hidden
+  Panel* panel = nullptr;                                    ///< the panel of values, with handles; null: not shown
 };
 
-/// The overlay's windows of ImGui, none of which covers another (OverlayLayout). One that is cut takes the mouse, to be
-/// scrolled; of the others only the panel of values takes input. Needs ImGui's context; not thread-safe.
+/// The overlay's windows of ImGui, none of which covers another (OverlayLayout). A window that is cut takes mouse
+/// input, to be scrolled; otherwise only the panel of values takes input. Needs ImGui's context; not thread-safe.
 class OverlayPanels {
  public:
   /// Loads the font and sets the style for texts of this size. ImGui's font texture has to be made again afterwards.
   static void set_scale(double scale);
 
-  /// Within a frame of ImGui, which knows the size of a panel after two frames of it.
+  /// Within a frame of ImGui, which knows the size of a new panel after two frames.
   void draw(const OverlayFacts& facts);
 
   /// Returns true once the sizes of all panels that are shown are known.
@@ -62,9 +62,9 @@ class OverlayPanels {
 
  private:
   struct Place {
-    PanelSize wanted;  // as of the last frame in which it was shown; empty: it has never been
+    PanelSize wanted;  // as of the last frame in which it was shown; empty: never shown
     PanelRect rect;    // of this frame
-    int frames = 0;    // in which it was shown, as far as they count: at most kFramesToMeasure
+    int frames = 0;    // number of frames in which it was shown, counted up to kFramesToMeasure
   };
   static constexpr int kFramesToMeasure = 2;
 

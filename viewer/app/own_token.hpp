@@ -4,9 +4,9 @@
 
 namespace yuragi::viewer::app {
 
-/// Returns the token that the viewer shows to the daemon: that of the file which the environment variable
-/// YURAGI_TOKEN_FILE names; empty if it names none. A file that cannot be read is reported on standard error, and the
-/// token is empty: the wall shows its picture all the same.
+/// Returns the token that the viewer sends to the daemon, from the file named by the environment variable
+/// YURAGI_TOKEN_FILE; empty if it is not set. If the file cannot be read, this prints an error and returns an empty
+/// token: the wall still shows its picture.
 Secret own_token();
 
 }  // namespace yuragi::viewer::app

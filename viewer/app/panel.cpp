@@ -61,7 +61,7 @@ void Panel::reset(std::string_view scene, std::string_view key) {
   put(std::move(edit));
 }
 
-/// It takes the place of another value for the same parameter that was not sent yet; what is shown is the last one.
+/// Replaces a waiting value of the same parameter; what is shown is the last one.
 void Panel::put(Edit edit) {
   if (!is_connected_ || !refusal_.empty()) return;
   std::erase_if(edits_, [&edit](const Edit& one) {

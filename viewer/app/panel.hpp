@@ -10,48 +10,48 @@
 
 namespace yuragi::viewer::app {
 
-/// The values of the daemon's [look] and scenes as a person sees and sets them: which Control is to be sent when, and
-/// what is shown meanwhile. It knows no name of a parameter; all it has comes from the daemon. Pure: time is a
-/// parameter. Thread-safe: no.
+/// The values of the daemon's [look] and scenes as a person sees and sets them: it decides which Control to send when,
+/// and what is shown meanwhile. It contains no parameter's name; the daemon sends them all. Pure: time is a parameter.
+/// Thread-safe: no.
 ///
 /// While a slider is dragged at most one value in kSendEvery_s is sent, and of each scene one at a time is on its way;
 /// the last one is always sent. What a person has set is shown until the daemon has answered.
 class Panel {
  public:
   static constexpr double kSendEvery_s = 0.1;
-  static constexpr double kListEvery_s = 0.5;  ///< the list of all parameters is asked for at most so often
+  static constexpr double kListEvery_s = 0.5;  ///< minimum interval between requests for the list of all parameters
 
-  /// The connection has been made, or lost: what was known is forgotten.
+  /// Call when the connection is made or lost: forgets the daemon's values.
   void set_connected(bool is_connected);
-  /// Sensors::parameters_revision, as often as it comes.
+  /// Takes Sensors::parameters_revision each time it is received.
   void take_revision(std::uint64_t revision);
   void take_reply(const wire::ControlReply& reply);
 
-  /// A person has moved a handle; `value` as wire::ParameterEdit.
+  /// Takes a value that a person has set; `value` as in wire::ParameterEdit.
   void set(std::string_view scene, std::string_view key, std::string value);
   /// Back to the configuration's value.
   void reset(std::string_view scene, std::string_view key);
 
-  /// What is to be sent at now_s, if anything: to be asked again until there is nothing.
+  /// Returns what to send at now_s; nullopt: nothing. Call it until it returns nullopt.
   std::optional<wire::Control> next(double now_s);
 
   const std::vector<wire::ParameterGroup>& groups() const { return groups_; }
-  /// What to show for a parameter of a group: what a person has set of it, or the daemon's value.
+  /// Returns the value to show for a parameter: the one that a person has set, or else the daemon's.
   const std::optional<std::string>& value(const wire::ParameterGroup& group, const wire::ParameterState& state) const;
-  /// Has a person set something that the list does not have yet?
+  /// Returns true if a person has set a value that the daemon's list does not have yet.
   bool is_setting() const { return !edits_.empty(); }
-  /// Why nothing can be set; empty: it can.
+  /// The reason why nothing can be set; empty: values can be set.
   const std::string& refusal() const { return refusal_; }
   /// Why the last value was not set; empty: it was.
   const std::string& mistake() const { return mistake_; }
-  /// Has the list of parameters come?
+  /// Returns true once the list of parameters was received.
   bool has_list() const { return !groups_.empty(); }
 
  private:
   enum class Stage : std::uint8_t {
     kWaiting,  ///< to be sent
     kSent,     ///< as `number`
-    kDone,     ///< and the list that would say so was not asked for yet
+    kDone,     ///< and the list that confirms it was not requested yet
     kListed,   ///< and the next list has it
   };
   struct Edit {

@@ -16,7 +16,7 @@ namespace yuragi::viewer::app {
 namespace {
 
 constexpr float kTooltipWidth = 26.0F;  // letters
-constexpr double kLargeRatio = 1000.0;  // of a slider's ends, above which it is logarithmic
+constexpr double kLargeRatio = 1000.0;  // ratio of a slider's ends above which it is logarithmic
 const ImVec4 kNotice(1.0F, 0.78F, 0.36F, 1.0F);
 const ImVec4 kFaded(0.98F, 0.97F, 0.94F, 0.66F);
 
@@ -37,7 +37,7 @@ constexpr std::array<std::pair<ImGuiCol, ImU32>, 12> kColors{{{ImGuiCol_FrameBg,
                                                               {ImGuiCol_ButtonHovered, faint_ink(56)},
                                                               {ImGuiCol_ButtonActive, faint_ink(72)}}};
 
-/// The colors of handles and headers, until its end.
+/// Sets the colors of handles and headers for its lifetime.
 class QuietColors {
  public:
   QuietColors() {
@@ -67,7 +67,7 @@ std::string with_unit(const wire::ParameterState& state, const std::string& valu
   return state.unit.empty() ? value : value + " " + state.unit;
 }
 
-/// How a slider writes a number: as fine as it can be moved. ImGui rounds to it.
+/// Returns the format of a slider's number: as fine as the slider's steps. ImGui rounds to it.
 std::string number_format(const wire::ParameterState& state) {
   const double range = *state.max - *state.min;
   const int decimals = range > 0.0 ? std::clamp(3 - static_cast<int>(std::floor(std::log10(range))), 1, 6) : 3;
@@ -81,7 +81,7 @@ ImGuiSliderFlags slider_flags(double min, double max) {
   return ImGuiSliderFlags_AlwaysClamp | (is_logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
 }
 
-// Each widget returns the value that a person has set with it, if any. `now`: nothing where it is left out.
+// Each widget returns the value that a person has set with it, if any. `now`: nullopt if it is omitted.
 using Input = std::optional<std::string>;
 
 Input edit_number(const wire::ParameterState& state, const Input& now) {
@@ -98,7 +98,7 @@ Input edit_number(const wire::ParameterState& state, const Input& now) {
 }
 
 Input edit_whole_number(const wire::ParameterState& state, const Input& now) {
-  // ImGui's sliders take half of what 64 bits hold.
+  // ImGui's sliders take half of the range of 64 bits.
   constexpr double kMost = 0x1p62;
   const auto min = static_cast<std::int64_t>(std::max(state.min.value_or(-kMost), -kMost));
   const auto max = static_cast<std::int64_t>(std::min(state.max.value_or(kMost), kMost));

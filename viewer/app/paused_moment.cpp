@@ -6,7 +6,7 @@ namespace yuragi::viewer::app {
 
 const stream::PoseMoment& PausedMoment::advance(const stream::PoseMoment& live, double passed_s) {
   if (is_paused_) {
-    // A pause within the cross-fade of the one before keeps what is seen.
+    // A pause during the cross-fade after another pause holds the mixed picture.
     if (!is_held_) held_ = fade_ < 1.0 ? shown_ : live;
     is_held_ = true;
     fade_ = 0.0;

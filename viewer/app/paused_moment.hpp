@@ -4,9 +4,9 @@
 
 namespace yuragi::viewer::app {
 
-/// Keeps the picture as it is while a person has paused it, and cross-fades from there to what is live when it goes
-/// on. What came meanwhile is not shown: whoever calls this lets the stream's timeline go on and drop it. Where the
-/// scenes have become others, it goes on without a cross-fade. Pure: time is a parameter. Thread-safe: no.
+/// Holds the picture while a person has paused it, and cross-fades to the live one when the pause ends. Frames of the
+/// pause are not shown: the caller continues to advance the stream's timeline and drops them. If the scenes have
+/// changed, there is no cross-fade. Pure: time is a parameter. Thread-safe: no.
 class PausedMoment {
  public:
   static constexpr double kFade_s = 1.0;
@@ -14,7 +14,7 @@ class PausedMoment {
   void toggle() { is_paused_ = !is_paused_; }
   bool is_paused() const { return is_paused_; }
 
-  /// What to show where `live` would be shown without a pause: valid until the next call, or as long as `live` is.
+  /// Returns the moment to show instead of `live`: valid until the next call, or as long as `live` is.
   const stream::PoseMoment& advance(const stream::PoseMoment& live, double passed_s);
 
  private:

@@ -37,17 +37,17 @@ namespace yuragi::viewer::app {
 namespace {
 
 constexpr double kIdleWait_s = 0.1;     // while there is nothing to draw on
-constexpr double kBlackWait_s = 0.05;   // between two looks for news while all is black
-constexpr double kBlackAgain_s = 0.5;   // a monitor that has come back is black soon
+constexpr double kBlackWait_s = 0.05;   // between two checks for news while the picture is black
+constexpr double kBlackAgain_s = 0.5;   // a monitor that has returned is black soon
 constexpr double kDarkest = 1.0 / 512;  // less than a step of a pixel's value
-constexpr double kLookWait_s = 1.0;     // for the daemon's first status, which has its look
+constexpr double kLookWait_s = 1.0;     // to wait for the daemon's first status, which has its look
 constexpr int kOverlayPictures = 2;     // the overlay's size is known after the first
 constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
-constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
-constexpr double kAgeSaid_s = stream::PictureAge::kSpan_s;
+constexpr double kHandFade_s = 0.3;  // fade of the light while a person moves a handle of the panel
+constexpr double kAgeLogInterval_s = stream::PictureAge::kSpan_s;
 constexpr int kMeasuredEvery = 3;   // pictures of a graphics card: to wait for one costs a little
-constexpr double kDimming_s = 0.5;  // between two of the daemon's statuses the brightness goes on
+constexpr double kDimming_s = 0.5;  // the brightness continues for this long between two of the daemon's statuses
 
 double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
@@ -150,7 +150,7 @@ class Viewer::Show {
       note_age(display_interval_s());
       if (gl::is_context_lost())
         throw picture::ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
-      // Where the processor draws the picture is done now.
+      // If the processor draws, the picture is complete at this point.
       if (is_usual && is_software_) work_s = now_s() - last_s_;
       choose_pace(size, work_s);
       keep_pace();
@@ -158,8 +158,8 @@ class Viewer::Show {
   }
 
   /// At the end.
-  void say_last_age() {
-    if (options_.says_age) say_age();
+  void log_last_age() {
+    if (options_.logs_age) log_age();
   }
 
   void run_screenshot() {
@@ -193,15 +193,14 @@ class Viewer::Show {
     picture::write_picture(options_.screenshot, size.width_px, size.height_px, renderer_->read_rgb());
   }
 
-  /// Empty where there is nothing to show it on.
+  /// Returns an empty size if there is no monitor to show it on.
   PixelSize size_to_show() const {
     if (!wall_) return window_->framebuffer_size();
     const output::Size size = wall_->picture_size();
     return wall_->is_dark() ? PixelSize{} : PixelSize{.width_px = size.width_px, .height_px = size.height_px};
   }
 
-  /// A picture that nobody would see is not drawn. The next news is looked for soon enough that its light, which comes
-  /// slowly, is not late.
+  /// A black picture is not drawn. News is checked often enough that a new light, which fades in slowly, is not late.
   bool is_picture_black() const {
     return brightness_ == 0.0 && wanted_brightness() == 0.0 && !has_something_over() && !test_card_;
   }
@@ -224,7 +223,7 @@ class Viewer::Show {
                                   "HOST:PORT, or wait longer with --wait SECONDS.");
   }
 
-  /// A camera that is asked for by its name has to come.
+  /// A camera that was requested by its name must be received first.
   double longest_wait_for_status_s() const {
     return director_->is_camera_named() ? std::max(options_.wait_s, kLookWait_s) : kLookWait_s;
   }
@@ -235,11 +234,11 @@ class Viewer::Show {
                                                    place(screen.upper_left_m), place(screen.eye_m)));
   }
 
-  /// Says a change in the log.
-  void tell_quality() {
+  /// Logs a change of the quality.
+  void log_quality() {
     pace::Step step = pace_ ? pace_->step() : pace::Step{};
     step.quality = renderer_->quality();
-    if (step == told_) return;
+    if (step == logged_step_) return;
     const std::string text = pace::quality_text(step.quality, step.part, step.refreshes);
     std::string reason;
     if (pace_ && pace_->is_held()) {
@@ -249,10 +248,10 @@ class Viewer::Show {
                            1e3 * pace_->picture_s());
     }
     std::fprintf(stderr, "yuragi-viewer: %s%s\n", text.c_str(), reason.c_str());
-    told_ = step;
+    logged_step_ = step;
   }
 
-  /// Are there, for some seconds, two pictures in one: of two cameras, or of scenes that come and go?
+  /// Returns true while two pictures are mixed for some seconds: of two cameras, or of scenes that fade.
   bool is_in_transition() const {
     return director_->is_fading() ||
            std::ranges::any_of(moment_->opacities, [](float opacity) { return opacity > 0.0F && opacity < 1.0F; });
@@ -265,14 +264,14 @@ class Viewer::Show {
     return now_s() - last_s_;
   }
 
-  /// All parts of a wall, whose viewers may run on several machines, are drawn as the slowest can: the daemon passes on
-  /// what each gives up.
+  /// All parts of a wall, whose viewers may run on several machines, are drawn at the quality of the slowest: the
+  /// daemon passes on what each omits.
   void agree_with_wall() {
     pace_->hold(sensors_->given_up);
     const std::uint8_t own = pace_->given_up();
-    if (own == said_given_up_ && own <= sensors_->given_up) return;
+    if (own == sent_given_up_ && own <= sensors_->given_up) return;
     connection_.send(wire::Display{.given_up = own});
-    said_given_up_ = own;
+    sent_given_up_ = own;
   }
 
   /// How much is drawn of the next picture, after one of this size.
@@ -355,7 +354,7 @@ class Viewer::Show {
     }
   }
 
-  /// Takes what has arrived, and advances to now.
+  /// Takes what was received, and advances to now.
   void advance() {
     stream::Inbox inbox = connection_.take();
     if (inbox.wind_from_deg) director_->set_wind_from(*inbox.wind_from_deg);
@@ -381,10 +380,10 @@ class Viewer::Show {
     last_s_ = now;
     picture_passed_s_ = passed_s;
     moment_ = &paused_.advance(timeline_.advance(now), passed_s);
-    // A wall stays black, and a picture in a file is not made without a frame.
+    // A wall stays black, and a picture in a file is made only with a frame.
     if (window_ && !wall_) notice_ = notice_words_.advance(now, timeline_.playback(), connection_.status());
     follow_brightness(is_first_status ? kDimming_s : passed_s);
-    // Scenes that are new while a picture stands still come when it goes on.
+    // New scenes are shown when the pause ends.
     if (!paused_.is_paused()) {
       if (auto scenes = timeline_.take_new_scenes()) {
         director_->set_scenes(std::move(*scenes));
@@ -392,13 +391,13 @@ class Viewer::Show {
       }
     }
     director_->advance(passed_s, utc_s_, moment_->wind.wind);
-    tell_quality();
+    log_quality();
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
     std::rotate(picture_times_ms_.begin(), picture_times_ms_.begin() + 1, picture_times_ms_.end());
     picture_times_ms_.back() = static_cast<float>(1e3 * passed_s);
   }
 
-  /// Of the sensors that are believed; nothing where there is none.
+  /// Speed by the sensors that are believed; nullopt if there are none.
   std::optional<double> measured_m_s() const {
     double sum = 0.0;
     int count = 0;
@@ -411,13 +410,13 @@ class Viewer::Show {
     return count > 0 ? std::optional(sum / count) : std::nullopt;
   }
 
-  /// Is anything drawn over the picture?
+  /// Returns true if anything is drawn over the picture.
   bool has_something_over() const {
     return has_overlay_ || has_panel_ || has_help_ || has_profiler_ || has_wind_ || paused_.is_paused() ||
            !notice_.empty();
   }
 
-  /// Nothing is asked of the daemon before a person wants to see the panel.
+  /// Requests parameters only once a person opens the panel.
   void advance_panel(const stream::Inbox& inbox) {
     if (inbox.is_of_new_connection) panel_.set_connected(false);
     panel_.set_connected(connection_.status().state == stream::State::kConnected);
@@ -481,15 +480,15 @@ class Viewer::Show {
                     .panel = has_panel_ ? &panel_ : nullptr});
   }
 
-  /// The picture has been handed to the display, which takes so long to show it.
+  /// Call when the picture was handed to the display, which needs `display_s` to show it.
   void note_age(double display_s) {
     if (timeline_.playback() == stream::Playback::kLive) age_.take_picture(*moment_, now_s(), display_s);
-    if (options_.says_age && now_s() - age_said_s_ >= kAgeSaid_s) say_age();
+    if (options_.logs_age && now_s() - age_logged_s_ >= kAgeLogInterval_s) log_age();
   }
 
-  void say_age() {
-    age_said_s_ = now_s();
-    const auto age = age_.figures(age_said_s_);
+  void log_age() {
+    age_logged_s_ = now_s();
+    const auto age = age_.figures(age_logged_s_);
     std::fprintf(stderr, "yuragi-viewer: %s\n", age ? age_text(*age).c_str() : "no reading has been shown");
   }
 
@@ -497,8 +496,8 @@ class Viewer::Show {
     return wall_ ? wall_->picture_interval_s() : 1.0 / window_->refresh_rate_hz();
   }
 
-  /// Waits where the driver does not wait for the screen, or only for its next refresh: no more pictures than are
-  /// wanted.
+  /// Waits if the driver does not wait for the screen, or only for its next refresh, so that no more pictures are made
+  /// than wanted.
   void keep_pace() {
     const double rest_s = 0.95 * pace_->picture_s() - (now_s() - last_s_);
     if (rest_s > 0.0) window_->wait(rest_s);
@@ -508,9 +507,9 @@ class Viewer::Show {
   const std::atomic<bool>& is_stopping_;
   stream::Connection connection_;
   const std::optional<output::Output> output_;
-  std::optional<Window> window_;                 // none for a picture in a file; the members below need its context
-  std::optional<wall::Wall> wall_;               // of the window, where there is an output
-  std::optional<picture::GlRenderer> renderer_;  // has a context of its own where there is no window
+  std::optional<Window> window_;                 // nullopt for a picture in a file; the members below need its context
+  std::optional<wall::Wall> wall_;               // of the window, if there is an output
+  std::optional<picture::GlRenderer> renderer_;  // has a context of its own if there is no window
   std::optional<picture::Director> director_;
   std::optional<gl::Dimmer> dimmer_;
   std::optional<wall::TestCard> test_card_;
@@ -519,22 +518,22 @@ class Viewer::Show {
 
   Watchdog watchdog_;
   bool is_software_ = false;
-  std::optional<pace::Keeper> pace_;                  // of a window: a picture in a file has all
-  pace::Step told_{.quality = look::Quality::kAuto};  // in the log
+  std::optional<pace::Keeper> pace_;                         // of a window: a picture in a file is drawn in full
+  pace::Step logged_step_{.quality = look::Quality::kAuto};  // in the log
   PixelSize paced_size_;
-  std::uint8_t said_given_up_ = 0;  // to the daemon
+  std::uint8_t sent_given_up_ = 0;  // to the daemon
   int measured_pictures_ = 0;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
   stream::PictureAge age_;
-  double age_said_s_ = now_s();
+  double age_logged_s_ = now_s();
   const stream::PoseMoment* moment_ = nullptr;
   std::optional<wire::Sensors> sensors_;
   double began_s_;
   double last_s_;
   double picture_passed_s_ = 0.0;  // since the picture before
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
-  double black_until_s_ = 0.0;     // what is shown is black, and need not be shown again before
+  double black_until_s_ = 0.0;     // the shown picture is black, and need not be updated before this time
   PixelSize black_size_;
   double brightness_;  // of the picture, 0 to 1
   bool has_overlay_;
@@ -559,7 +558,7 @@ Viewer::~Viewer() = default;
 
 void Viewer::run() {
   is_picture_ ? show_->run_screenshot() : show_->run_window();
-  show_->say_last_age();
+  show_->log_last_age();
 }
 
 }  // namespace yuragi::viewer::app

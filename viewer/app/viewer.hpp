@@ -7,8 +7,8 @@
 
 namespace yuragi::viewer::app {
 
-/// The viewer's main loop: a window, or a picture in a file, of what a daemon streams. On the main thread; throws
-/// ViewerExit.
+/// The viewer's main loop: shows in a window, or writes to a picture file, what a daemon streams. On the main thread;
+/// throws ViewerExit.
 class Viewer {
  public:
   /// `is_stopping`: set by a signal handler, ends run() at the next picture; must outlive this.

@@ -11,8 +11,8 @@ Watchdog::Watchdog(platform::ServiceEnvironment service)
       interval_s_(service.watchdog ? std::optional(seconds(*service.watchdog) / 2.0) : std::nullopt) {}
 
 void Watchdog::went_round(double now_s) {
-  if (!interval_s_ || (said_s_ && now_s - *said_s_ < *interval_s_)) return;
-  if (socket_.send("WATCHDOG=1")) said_s_ = now_s;
+  if (!interval_s_ || (sent_s_ && now_s - *sent_s_ < *interval_s_)) return;
+  if (socket_.send("WATCHDOG=1")) sent_s_ = now_s;
 }
 
 }  // namespace yuragi::viewer::app

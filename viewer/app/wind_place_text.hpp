@@ -7,7 +7,7 @@
 namespace yuragi::viewer::app {
 
 /// Where the wind that the overlay shows is measured: "at the edge, 0.7 s to the middle", "at the sensors, 12 m
-/// downwind". Empty where it is in the middle.
+/// downwind". Empty if it is in the middle.
 std::string wind_place_text(const wind::State& wind);
 
 }  // namespace yuragi::viewer::app

@@ -7,8 +7,8 @@
 
 namespace yuragi::viewer::app {
 
-/// The wind's speed of the last minute: what moves the scenes, and what the sensors measured. Pure: time is a
-/// parameter. Allocates nothing once it is full. Thread-safe: no.
+/// The wind's speed of the last minute: the one that moves the scenes, and the measured one. Pure: time is a parameter.
+/// Allocates nothing once it is full. Thread-safe: no.
 class WindTrace {
  public:
   static constexpr double kInterval_s = 0.125;
@@ -16,20 +16,20 @@ class WindTrace {
 
   WindTrace();
 
-  /// A speed at a time of the sender's; means over kInterval_s are kept. Where time goes back, or more than a minute
-  /// is missing, the trace begins anew; a shorter gap is filled with the speed before it.
+  /// Takes a speed at a time of the sender; means over kInterval_s are kept. If time goes back, or more than a minute
+  /// is missing, the trace begins again; a shorter gap is filled with the speed before it.
   void hear(double time_s, double speed_m_s, std::optional<double> measured_m_s);
 
-  /// The oldest first, m/s. As many as have come.
+  /// m/s, the oldest first; as many as were received.
   const std::vector<float>& speeds_m_s() const { return speeds_; }
-  /// Likewise; 0 where no sensor was believed.
+  /// In the same order; 0 if no sensor was believed.
   const std::vector<float>& measured_m_s() const { return measured_; }
 
  private:
   void put(double speed_m_s, double measured_m_s);
 
   std::vector<float> speeds_, measured_;
-  std::optional<double> ends_s_;  // of the interval that is being averaged
+  std::optional<double> ends_s_;  // end of the interval that is being averaged
   double sum_ = 0.0;
   double measured_now_ = 0.0;
   int count_ = 0;

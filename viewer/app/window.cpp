@@ -31,7 +31,7 @@ void begin_glfw() {
   if (glfwInit() != GLFW_TRUE) throw_unavailable("there is no display to open a window on");
 }
 
-/// For the windows that are created from now on: those of a wall share the first one's context.
+/// Sets hints for the windows that are created from now on: those of a wall share the first one's context.
 void ask_for(const gl::Version& version) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version.major);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version.minor);
@@ -39,7 +39,7 @@ void ask_for(const gl::Version& version) {
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
 }
 
-/// With a current context that is enough; null if there is none.
+/// Returns a window whose context, now current, fulfils the requirements; null if there is none.
 GLFWwindow* create_with_newest_gl(const WindowOptions& options) {
   for (const gl::Version& version : gl::kVersionsToAskFor) {
     ask_for(version);
@@ -56,7 +56,7 @@ GLFWwindow* create_with_newest_gl(const WindowOptions& options) {
 [[noreturn]] void throw_without_gl() {
   glfwDefaultWindowHints();
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-  std::optional<gl::Driver> driver;  // that of a context of any version
+  std::optional<gl::Driver> driver;  // the driver of a context of any version
   if (GLFWwindow* const made = glfwCreateWindow(64, 64, "Yuragi", nullptr, nullptr); made != nullptr) {
     glfwMakeContextCurrent(made);
     driver = gl::current_driver();
@@ -76,7 +76,7 @@ struct Window::State {
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
 #endif
     if (options.is_hidden) {
-      // For this window, and for those that share its context. A wall goes on where another window has the keyboard.
+      // For this window, and for those that share its context. A wall is shown even if another window has the keyboard.
       for (const int hint : {GLFW_VISIBLE, GLFW_DECORATED, GLFW_AUTO_ICONIFY}) glfwWindowHint(hint, GLFW_FALSE);
     }
     is_placed_by_wall = options.is_hidden;

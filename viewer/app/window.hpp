@@ -15,8 +15,8 @@ struct WindowOptions {
   int width_px = 1280;
   int height_px = 720;
   bool is_fullscreen = false;
-  std::optional<int> monitor;  ///< for full screen, counted from 0; empty: the primary one
-  bool is_hidden = false;      ///< at first, and without a frame: for a wall (viewer/wall), which places it
+  std::optional<int> monitor;  ///< for full screen, counted from 0; nullopt: the primary one
+  bool is_hidden = false;      ///< hidden at first, and without a frame: for a wall (viewer/wall), which places it
 };
 
 /// The user's input since the last take_input(). Drags are shares of the window's height.
@@ -26,7 +26,7 @@ struct WindowInput {
   double pan_right = 0.0;
   double pan_down = 0.0;
   double zoom_notches = 0.0;
-  std::vector<Key> keys;  ///< that were pressed, in their order
+  std::vector<Key> keys;  ///< pressed keys, in their order
 
   bool moves_camera() const {
     return orbit_right != 0.0 || orbit_down != 0.0 || pan_right != 0.0 || pan_down != 0.0 || zoom_notches != 0.0;
@@ -52,14 +52,14 @@ class Window {
   GLFWwindow* handle() const;
   bool is_closing() const;
   void close();
-  /// To full screen and back; a window of a wall stays where it is.
+  /// Switches to full screen and back; a window of a wall keeps its place.
   void toggle_fullscreen();
 
   /// The size of the framebuffer, in pixels; empty while the window is minimised.
   PixelSize framebuffer_size() const;
   /// Pixels of this screen for each point of a text's size: 2 on a screen of high resolution.
   double content_scale() const;
-  /// Of the screen; 60 where it is unknown.
+  /// Refresh rate of the screen; 60 if it is unknown.
   double refresh_rate_hz() const;
 
   /// Handles pending events.
@@ -68,11 +68,11 @@ class Window {
   void wait(double limit_s);
   WindowInput take_input();
 
-  /// From now on, mouse or keys are meant for what is drawn over the picture, and do not come with take_input(), nor
-  /// close the window.
+  /// From now on mouse or keys are meant for the overlay: take_input() does not return them, and keys do not close the
+  /// window.
   void set_taken(bool is_mouse_taken, bool are_keys_taken);
 
-  /// Shows what was drawn; waits for the screen's refresh where the driver can.
+  /// Shows what was drawn; waits for the screen's refresh if the driver can.
   void swap();
 
  private:
@@ -80,8 +80,8 @@ class Window {
   std::unique_ptr<State> state_;
 };
 
-/// The monitors of this display, a line for each (viewer/wall/monitors.hpp). Before any window. Throws ViewerExit
-/// (EX_UNAVAILABLE) where there is no display.
+/// The monitors of this display, one line each (viewer/wall/monitors.hpp). Call before making any window. Throws
+/// ViewerExit (EX_UNAVAILABLE) if there is no display.
 std::string list_monitors();
 
 }  // namespace yuragi::viewer::app

@@ -26,21 +26,21 @@ namespace {
 constexpr int kFilmSamples = 4;  // a pixel
 constexpr double kTerminalProgress_s = 0.5;
 constexpr double kLogProgress_s = 30.0;
-/// So much more is replayed than the film is long: its last picture may lie between two ticks.
+/// The replay is longer than the film by this, because the film's last picture can lie between two ticks.
 constexpr double kMoreReplay_s = 0.25;
 
-/// Pictures of a film of this duration: those at 0, 1 / fps ... before its end.
+/// Returns the number of pictures of a film: those at 0, 1 / fps ... before its end.
 int picture_count(double duration_s, double fps) {
   return static_cast<int>(std::ceil(std::min(duration_s * fps, 1e9) - 1e-6));
 }
 
-/// Takes a stream's messages, up to the frame that a moment needs.
+/// Takes a stream's messages, up to the frame that is needed for a moment.
 class Reader {
  public:
   Reader(Stream& stream, picture::Director& director, const std::string& source)
       : stream_(stream), director_(director), source_(source) {}
 
-  /// Reads on until there is a frame that is not before so long after the first one. False where the stream ends first.
+  /// Reads until a frame at least this long after the first one. Returns false if the stream ends first.
   bool read_until(double after_first_s) {
     while (!timeline_.has_begun() || timeline_.newest_s() - first_s_ < after_first_s) {
       auto message = stream_.next();
@@ -52,7 +52,7 @@ class Reader {
 
   const stream::PoseMoment& moment_at(double after_first_s) { return timeline_.at(first_s_ + after_first_s); }
   double utc_s_at(double after_first_s) const { return utc_s_ + after_first_s - (timeline_.newest_s() - first_s_); }
-  /// Nothing where the stream does not say it.
+  /// Nullopt if the stream does not report it.
   std::optional<double> length_s() const { return length_s_; }
 
  private:
@@ -101,7 +101,7 @@ std::vector<std::string> replay_arguments(const picture::ViewerOptions& options)
   return arguments;
 }
 
-/// On a terminal one line that changes, elsewhere a line now and then.
+/// On a terminal a line that is updated, otherwise a new line from time to time.
 class ProgressLine {
  public:
   void show(int made, std::optional<int> total) {
@@ -158,7 +158,7 @@ bool make_film(const picture::ViewerOptions& options, Stream& stream, picture::R
 }
 
 void render_recording(const picture::ViewerOptions& options, const std::atomic<bool>& is_stopping) {
-  // A reader that has gone and data that does not fit are reported as errors; they do not end the program at once.
+  // Reports a closed pipe and a full disk as errors, instead of ending the program by a signal.
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   const std::unique_ptr<Output> output = make_film_output(
       options.out, {.width_px = options.width_px, .height_px = options.height_px, .pictures_per_s = options.fps},

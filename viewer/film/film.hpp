@@ -11,17 +11,17 @@
 
 namespace yuragi::viewer::film {
 
-/// How far a film is: pictures made, and how many there will be, where that is known.
+/// Progress of a film: the pictures made, and their total, if it is known.
 using Progress = std::function<void(int made, std::optional<int> total)>;
 
 /// Makes a film of a stream that waits for its reader: a picture each 1 / options.fps seconds of its time, from its
-/// first frame to its last or options.duration_s. No clock and no delay has a part in it: the same stream gives the
-/// same pictures. Ends early once `is_stopping` is set; returns whether it is whole. Throws ViewerExit.
+/// first frame to its last or options.duration_s. It depends on no clock and no delay: the same stream gives the same
+/// pictures. Ends early once `is_stopping` is set; returns whether it is whole. Throws ViewerExit.
 bool make_film(const picture::ViewerOptions& options, Stream& stream, picture::Renderer& renderer, Output& output,
                const Progress& progress, const std::atomic<bool>& is_stopping);
 
-/// The whole of `yuragi-viewer --render`: stream, renderer and output as `options` ask for, and progress on standard
-/// error. Throws ViewerExit, also where `is_stopping` ended it.
+/// The whole of `yuragi-viewer --render`: stream, renderer and output according to `options`, and progress on standard
+/// error. Throws ViewerExit, also if `is_stopping` ended it.
 void render_recording(const picture::ViewerOptions& options, const std::atomic<bool>& is_stopping);
 
 }  // namespace yuragi::viewer::film

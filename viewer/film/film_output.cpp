@@ -23,7 +23,7 @@ constexpr const char* kVideoExtension = ".mp4";
   throw picture::ViewerExit(kExitInterrupted, "interrupted: the film is not whole");
 }
 
-/// A folder that is made, with its parents. Those that were missing are removed again if they are empty, unless kept.
+/// A folder that is made, with its parents. Unless kept, the new ones are removed again if they are empty.
 class MadeFolder {
  public:
   explicit MadeFolder(const std::filesystem::path& folder) {
@@ -128,7 +128,7 @@ class RawPictures final : public Output {
   const std::atomic<bool>& is_stopping_;
 };
 
-/// Rec. 709, as players take a film of this size to be; every second color sample, which every player can show.
+/// Rec. 709, which players assume for this size; with 4:2:0 subsampling, which every player supports.
 std::vector<std::string> ffmpeg_command(const Format& format, const std::filesystem::path& file) {
   return {"ffmpeg",
           "-nostdin",

@@ -12,8 +12,8 @@ namespace yuragi::viewer::film {
 /// The shell's exit code for a program that Ctrl-C has ended.
 inline constexpr int kExitInterrupted = 128 + SIGINT;
 
-/// Where the pictures of a film go. What is wrong throws ViewerExit. Without finish() the destructor removes every file
-/// and folder that this has made; what was there before stays.
+/// The destination of a film's pictures. Errors throw ViewerExit. Without finish() the destructor removes every file
+/// and folder that this has made, and no others.
 class Output {
  public:
   virtual ~Output() = default;
@@ -32,12 +32,12 @@ struct Format {
   double pictures_per_s = 30.0;
 };
 
-/// What is wrong with the name of a film, or an empty text.
+/// Returns the error in the name of a film, or an empty text.
 std::string check_film_name(const std::string& name);
 
-/// `name`: "-", the bytes of one picture after the other on standard output; FILE.mp4, which is made by ffmpeg as a
-/// child process and appears when it is whole; or a folder, which is made, for 000001.png and so on. Once `is_stopping`
-/// is set a write() that waits for its reader throws; it must outlive the output.
+/// `name`: "-", the bytes of one picture after the other on standard output; FILE.mp4, which ffmpeg makes as a child
+/// process and which appears when it is complete; or a folder, which is made, for 000001.png and so on. Once
+/// `is_stopping` is set a waiting write() throws; it must outlive the output.
 std::unique_ptr<Output> make_film_output(const std::string& name, const Format& format,
                                          const std::atomic<bool>& is_stopping);
 

@@ -28,7 +28,7 @@ std::vector<std::string> replay_command(const std::vector<std::string>& argument
   return command;
 }
 
-/// Exit codes of sysexits.h are passed on: 66, where there is no such recording.
+/// Exit codes of sysexits.h are passed on: 66 if the recording does not exist.
 int exit_code_after(const platform::ChildEnd& end) {
   return end.exit_code >= EX__BASE && end.exit_code <= EX__MAX ? end.exit_code : EX_SOFTWARE;
 }

@@ -12,17 +12,18 @@
 
 namespace yuragi::viewer::film {
 
-/// What a film is made of: a stream that waits for its reader.
+/// The source of a film: a stream that waits for its reader.
 class Stream {
  public:
   virtual ~Stream() = default;
 
-  /// The next message; nothing at the stream's end. Throws ViewerExit where it is none, or its sender has failed.
+  /// Returns the next message; nullopt at the stream's end. Throws ViewerExit if it is invalid, or its sender has
+  /// failed.
   virtual std::optional<wire::Message> next() = 0;
 };
 
-/// A recording that `yuragi replay` plays, as a child process: each tick comes when it is asked for. It stands beside
-/// this program, or is found by PATH.
+/// A recording that `yuragi replay` plays, as a child process: each tick is computed on demand. `yuragi` is searched
+/// for beside this program, then in PATH.
 class ReplayFilmStream final : public Stream {
  public:
   /// `arguments`: those of `yuragi replay`, the recording first. `is_stopping` ends next() like the stream's end; must

@@ -8,15 +8,15 @@
 
 namespace yuragi::viewer::film {
 
-/// Another program at one end of a pipe. It writes to our standard error, and Ctrl-C does not reach it:
-/// whoever started it ends it. It is killed with this object.
+/// Another program at one end of a pipe. It writes to our standard error, and does not receive Ctrl-C: its starter ends
+/// it. The destructor kills it.
 class PipedChild {
  public:
-  /// Which of the child's own files the pipe is.
+  /// The child's own file that is the pipe.
   enum class Pipe : std::uint8_t { kStandardInput, kStandardOutput };
 
-  /// `command`: the program, found by PATH where it names no folder, and its arguments. Throws std::system_error where
-  /// it cannot be started.
+  /// `command`: the program, found in PATH if it names no folder, and its arguments. Throws std::system_error if it
+  /// cannot be started.
   PipedChild(const std::vector<std::string>& command, Pipe pipe);
   ~PipedChild();
   PipedChild(const PipedChild&) = delete;
@@ -26,11 +26,11 @@ class PipedChild {
   int fd() const { return ours_; }
   void close_pipe();
 
-  /// Closes the pipe and waits until the child has ended; not where it reads on for ever, or writes.
+  /// Closes the pipe and waits until the child has ended; does not wait for a child that reads for ever, or writes.
   platform::ChildEnd wait();
 
  private:
-  /// Makes the pipe, starts the child with its end, and closes that here.
+  /// Makes the pipe, starts the child with its end, and closes that end here.
   platform::ChildProcess start(const std::vector<std::string>& command, Pipe pipe);
 
   int ours_ = -1;

@@ -19,7 +19,7 @@ int write_all(int fd, std::span<const std::uint8_t> bytes, const std::atomic<boo
     if (is_stopping) return ECANCELED;
     pollfd waiting{.fd = fd, .events = POLLOUT, .revents = 0};
     if (::poll(&waiting, 1, kStopCheck_ms) <= 0) continue;
-    // A pipe that has room at all has it for so much: the call does not wait.
+    // A pipe with any space has space for this many bytes: the call does not wait.
     const ssize_t count = ::write(fd, bytes.data(), std::min<std::size_t>(bytes.size(), PIPE_BUF));
     if (count < 0 && errno != EINTR && errno != EAGAIN) return errno;
     if (count > 0) bytes = bytes.subspan(static_cast<std::size_t>(count));

@@ -6,7 +6,7 @@
 
 namespace yuragi::viewer::gl {
 
-/// Mixes two whole pictures, as their lights mix. Needs a current context.
+/// Mixes two whole pictures, in linear light. Needs a current context.
 class CrossFade {
  public:
   CrossFade();
@@ -14,8 +14,8 @@ class CrossFade {
   /// Keeps a copy of the resolved pixels of `target`: the picture that fades out.
   void keep(const RenderTarget& target);
 
-  /// Mixes the picture that was kept with the resolved pixels of `target`, which has the same size: 0, the one that was
-  /// kept, to 1, the other.
+  /// Mixes the kept picture with the resolved pixels of `target`, which has the same size: 0, only the kept one, to 1,
+  /// only `target`.
   void draw(const RenderTarget& target, float share);
 
  private:

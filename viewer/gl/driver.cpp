@@ -12,7 +12,7 @@ std::string text_of(GLenum name) {
   return text != nullptr ? text : "";
 }
 
-/// What is wrong with it, as the end of a sentence.
+/// Returns what is wrong with the driver, as the end of a sentence.
 std::string complaint_of(const Driver& driver) {
   if (is_enough(driver)) return "refuses each version of OpenGL that was asked for";
   if (driver.gl_version < kOldest) return "lacks OpenGL 3.1";
@@ -21,7 +21,7 @@ std::string complaint_of(const Driver& driver) {
   return text.substr(0, text.size() - 2);
 }
 
-/// What helps, by what is known of drivers of 2026.
+/// Returns advice, for drivers of 2026.
 std::string remedy_text(const Driver& driver) {
   constexpr std::string_view kByProcessor =
       "To draw by the processor instead, which is slow:\n"
@@ -30,7 +30,8 @@ std::string remedy_text(const Driver& driver) {
       "install a newer Mesa, for example by a system upgrade to Debian 13, by the current Raspberry Pi OS, or from "
       "Debian 12's backports (libgl1-mesa-dri and libegl-mesa0).";
   const std::string_view renderer = driver.renderer;
-  // Mesa 22.3 (Debian 12) reports OpenGL 2.1 for V3D, though it has what is used here of 3.1; newer ones report 3.1.
+  // Mesa 22.3 (Debian 12) reports OpenGL 2.1 for V3D, though it has what this program uses of 3.1; newer ones report
+  // 3.1.
   if (renderer.starts_with("V3D 4")) {
     return "On a Raspberry Pi 4, start the viewer so:\n"
            "    MESA_GL_VERSION_OVERRIDE=3.1 yuragi-viewer\n"

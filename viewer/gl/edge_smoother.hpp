@@ -6,8 +6,8 @@
 
 namespace yuragi::viewer::gl {
 
-/// Smooths the stairs of edges in a finished picture of one sample a pixel, and what is finer than a pixel, so that it
-/// does not flicker while the camera or the wind moves it (T. Lottes 2009, "FXAA"). One pass. Needs a current context.
+/// Smooths edges in a finished picture of one sample a pixel, and details finer than a pixel, so that they do not
+/// flicker while the camera or the wind moves (T. Lottes 2009, "FXAA"). One pass. Needs a current context.
 class EdgeSmoother {
  public:
   EdgeSmoother();

@@ -20,7 +20,7 @@ struct Shader {
   GLuint name;
 };
 
-/// The file that a text is of; `otherwise` where it is of none.
+/// Returns the file name of a shader text; `otherwise` if it is unknown.
 std::string file_of(std::string_view source, const std::string& otherwise) {
   const auto all = shaders::all();
   const auto found = std::ranges::find(all, source, &shaders::Shader::text);
@@ -146,7 +146,7 @@ Program link_program(const std::string& name, std::string_view vertex, std::stri
     const GLuint place = glGetUniformBlockIndex(program.name(), block);
     if (place != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), place, binding);
   }
-  // Also where nothing is looked up: no two kinds of sampler may have one unit.
+  // Also if the sampler is not used: two kinds of sampler must not have one unit.
   set_sampler(program, "shadow_map", kShadowUnit);
   set_sampler(program, "shadow_depth", kShadowDepthUnit);
   set_sampler(program, "cloud_noise", kNoiseUnit);
@@ -188,8 +188,8 @@ bool is_software_renderer() {
 }
 
 bool is_context_lost() {
-  static const bool is_told = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
-  return is_told && glGetGraphicsResetStatus() != GL_NO_ERROR;
+  static const bool reports_reset = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
+  return reports_reset && glGetGraphicsResetStatus() != GL_NO_ERROR;
 }
 
 void report_gl_errors() {

@@ -17,7 +17,7 @@ template <class Kind>
 class Object {
  public:
   Object() : name_(Kind::make()) {}
-  // Not inlined: in std::optional::emplace() of what holds one, gcc 14 takes name_ for uninitialized there.
+  // Not inlined: in std::optional::emplace() of a type that holds one, gcc 14 reports name_ as uninitialized.
   [[gnu::noinline]] ~Object() {
     if (name_ != 0) Kind::unmake(name_);
   }
@@ -72,7 +72,7 @@ using Framebuffer = Object<FramebufferKind>;
 using Renderbuffer = Object<RenderbufferKind>;
 using Program = Object<ProgramKind>;
 
-/// Where a program finds the block of uniforms that all renderers share (view.hpp).
+/// The binding of the uniform block that all renderers share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
 /// And the block of the light (viewer/light/light.hpp).
 inline constexpr GLuint kLightBinding = 1;
@@ -81,21 +81,21 @@ inline constexpr GLuint kGroundBinding = 2;
 /// And the block Fires (viewer/light/fire_light.hpp).
 inline constexpr GLuint kFiresBinding = 3;
 
-/// The texture units: one for each texture that stays bound while others draw. 0 is anybody's, for a moment.
+/// The texture units: one for each texture that stays bound while others draw. Unit 0 is free for temporary use.
 enum TextureUnit : GLint {
-  kNoiseUnit = 1,  // of grass and what stands in it (looks/ground_maps.hpp), like the next three; of clouds' shadows in
-                   // every program
-  kTurfUnit,       //
-  kBendsUnit,      //
-  kGrowthUnit,     //
-  kBladesUnit,     // of those that are drawn, and their tiles or blocks
-  kTilesUnit,      //
-  kShadowUnit,     // the shadow map, in every program: compared with a depth, and as depths
+  kNoiseUnit = 1,    // of grass and what grows in it (looks/ground_maps.hpp), like the next three; in every program, of
+                     // cloud shadows
+  kTurfUnit,         //
+  kBendsUnit,        //
+  kGrowthUnit,       //
+  kBladesUnit,       // of those that are drawn, and their tiles or blocks
+  kTilesUnit,        //
+  kShadowUnit,       // the shadow map, in every program: compared with a depth, and as depths
   kShadowDepthUnit,  //
   kMirrorUnit,       // what water mirrors (Mirror)
   kSlopesUnit,       // of its waves
   kRipplesUnit,      //
-  kWaterMemoryUnit,  // what gusts have woken on it, and its foam
+  kWaterMemoryUnit,  // waves that gusts have raised on the water, and its foam
   kBedUnit,          // the colors of its bed
   kCloudsFromUnit,   // two maps of clouds
   kCloudsToUnit,     //
@@ -103,12 +103,12 @@ enum TextureUnit : GLint {
   kFlameRowsUnit,    //
   kFlameNoiseUnit,   //
   kFlameRampUnit,    //
-  kStripsUnit,       // of those that are drawn (StripIndices), for a moment
+  kStripsUnit,       // of the strips being drawn (StripIndices), temporarily
   kBeforeUnit,       // two pictures that cross-fade
   kNowUnit,          //
-  kImpostorUnit,     // the pictures of a far tree, and what their light needs to know
+  kImpostorUnit,     // the pictures of a far tree, and the data for their light
   kImpostorFacingUnit,
-  kGroundImageUnit,  // the picture that lies on the ground
+  kGroundImageUnit,  // the image on the ground
   kEdgesUnit,        // the picture whose edges are smoothed
 };
 
@@ -126,10 +126,10 @@ Texture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const st
 
 /// All that uploads count since the program began, in bytes. For measurements.
 std::size_t uploaded_bytes();
-/// How many shaders have been compiled since the program began. For measurements: a picture that compiles takes longer
+/// The number of shaders compiled since the program started. For measurements: a picture that compiles takes longer
 /// than others.
 std::size_t compiled_shaders();
-/// To be called with every upload of a picture that stream_to() does not make.
+/// Call with every upload of a picture that stream_to() does not make.
 void count_upload(std::size_t bytes);
 
 /// Gives new content to a buffer that is drawn from every frame, without waiting for the GPU, which may still read the
@@ -141,15 +141,15 @@ void stream_to(GLenum target, const Buffer& buffer, std::span<const T> content) 
   count_upload(content.size_bytes());
 }
 
-/// Does the driver compute every pixel on the processor, without graphics hardware?
+/// Returns true if the driver computes every pixel on the processor, without graphics hardware.
 bool is_software_renderer();
 
-/// Has the graphics card been reset, and with it all that the context had? Only a new context, that is, a program that
-/// is started again, can draw then. Never where the driver does not say so (GL_KHR_robustness).
+/// Returns true if the graphics card was reset, which deletes the context's content. Only a new context, that is, a
+/// restarted program, can then draw. Always false if the driver does not report it (GL_KHR_robustness).
 bool is_context_lost();
 
-/// From now on the driver's error messages go to standard error (KHR_debug; does nothing where the driver does not
-/// support it).
+/// From now on the driver's error messages go to standard error (KHR_debug; does nothing if the driver does not support
+/// it).
 void report_gl_errors();
 
 /// How many errors the driver has reported since report_gl_errors(). For tests.

@@ -48,8 +48,8 @@ struct HeadlessContext::State {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
 
-  /// Makes a context on this display current that is enough. Returns whether that was possible; if not, `too_old` is
-  /// the driver, if there is one.
+  /// Makes a sufficient context on this display current. Returns whether that was possible; if not, `too_old` is the
+  /// driver, if there is one.
   bool begin(EGLDisplay on, const HeadlessOptions& options, std::optional<Driver>& too_old) {
     if (on == EGL_NO_DISPLAY || eglInitialize(on, nullptr, nullptr) != EGL_TRUE) return false;
     display = on;
@@ -67,7 +67,7 @@ struct HeadlessContext::State {
       if (is_enough(current_driver())) return true;
       drop_context();
     }
-    // Of any version, to learn whose it is.
+    // Of any version, to learn its driver.
     if (make_current(config, {EGL_NONE})) too_old = current_driver();
     return false;
   }
@@ -111,7 +111,7 @@ struct HeadlessContext::State {
 };
 
 HeadlessContext::HeadlessContext(HeadlessOptions options) : state_(std::make_unique<State>()) {
-  std::optional<Driver> too_old;  // of the first display that has any, which is the graphics hardware's
+  std::optional<Driver> too_old;  // of the first display that has one, which is the graphics hardware's
   for (const EGLDisplay display : displays(options)) {
     std::optional<Driver> driver;
     if (state_->begin(display, options, driver)) return;

@@ -26,7 +26,7 @@ Mirror::Mirror(int width_px, int height_px) : width_px_(width_px), height_px_(he
 
 void Mirror::begin() {
   glActiveTexture(GL_TEXTURE0 + kMirrorUnit);
-  glBindTexture(GL_TEXTURE_2D, 0);  // not to be read while it is drawn
+  glBindTexture(GL_TEXTURE_2D, 0);  // must not be read while it is drawn
   glActiveTexture(GL_TEXTURE0);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glViewport(0, 0, width_px_, height_px_);

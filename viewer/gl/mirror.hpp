@@ -4,8 +4,8 @@
 
 namespace yuragi::viewer::gl {
 
-/// What a level mirror shows, as a texture with coarser and coarser levels, on the unit kMirrorUnit. With a stencil,
-/// for ScreenDoor. Needs a current context. Throws std::runtime_error where the driver cannot make it.
+/// The picture of a level mirror, as a texture with coarser levels, on the unit kMirrorUnit. With a stencil, for
+/// ScreenDoor. Needs a current context. Throws std::runtime_error if the driver cannot make it.
 class Mirror {
  public:
   Mirror(int width_px, int height_px);
@@ -13,9 +13,9 @@ class Mirror {
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }
 
-  /// What is drawn from now on goes into the mirror.
+  /// From now on draws into the mirror.
   void begin();
-  /// It can be looked up; the framebuffer to draw into is the caller's to bind.
+  /// The mirror can now be used; the caller binds the next framebuffer.
   void end();
 
  private:

@@ -46,7 +46,7 @@ std::vector<float> make_tile_values() {
     weight *= 0.55F;
   }
 
-  // Spread over the whole range.
+  // Scaled to the whole range.
   const auto [low, high] = std::minmax_element(tile.begin(), tile.end());
   const float from = *low;
   const float range = *high - *low;

@@ -10,12 +10,11 @@
 
 namespace yuragi::viewer::gl {
 
-/// What each pass of a picture costs. For measurements: it waits.
+/// Measures the cost of each pass of a picture. It waits, so it slows the picture.
 ///
-/// By the GPU: by timestamps between the passes (GL_TIMESTAMP), read when the picture is done; before OpenGL 3.3, where
-/// they may be missing, each pass is waited for, and its time is the clock's. By the processor, where that draws (which
-/// otherwise draws all passes together at the end): each pass is waited for, and its time is that of all threads of the
-/// process.
+/// On a GPU: by timestamps between the passes (GL_TIMESTAMP), read when the picture is done; before OpenGL 3.3, where
+/// they may be missing, it waits for each pass and uses the clock. If the processor draws (which otherwise draws all
+/// passes together at the end): it waits for each pass, whose time is that of all threads of the process.
 class PassClock {
  public:
   enum class By : std::uint8_t { kGpu, kProcessor };
@@ -27,7 +26,7 @@ class PassClock {
 
   /// A picture begins.
   void begin();
-  /// What has been drawn since the last mark, or since begin(), is of the pass `name`.
+  /// Assigns what was drawn since the last mark, or since begin(), to the pass `name`.
   void mark(std::string_view name);
 
   struct Pass {
@@ -37,11 +36,11 @@ class PassClock {
     std::size_t uploaded_bytes = 0;
     std::size_t triangles = 0;  ///< given to the pass, seen or not
   };
-  /// The picture ends. Its passes in order; marks of the same name are added up. Waits until the GPU is done.
+  /// Ends the picture. Returns its passes in order; marks of the same name are added up. Waits until the GPU is done.
   std::vector<Pass> end();
 
  private:
-  /// What had been spent at a mark since the program began; the clock counts from an unknown moment.
+  /// The time spent since the program started, at a mark; the clock counts from an unknown moment.
   struct Spent {
     double all_threads_ms = 0.0;
     double thread_ms = 0.0;
@@ -54,8 +53,8 @@ class PassClock {
 
   By by_;
   bool has_timestamps_;
-  std::vector<GLuint> timestamps_;       // one more than names_ while a picture is drawn; those behind are for later
-  std::vector<GLuint> triangle_counts_;  // likewise; the last is being counted
+  std::vector<GLuint> timestamps_;       // one more than names_ while a picture is drawn; the rest are spare
+  std::vector<GLuint> triangle_counts_;  // in the same order; the last is being counted
   std::vector<Spent> spent_;             // likewise
   std::vector<std::string> names_;
 };

@@ -5,7 +5,7 @@
 
 namespace yuragi::viewer::gl {
 
-/// A copy of a finished picture, to be looked up while another is drawn. Needs a current context.
+/// A copy of a finished picture, for lookups while another is drawn. Needs a current context.
 class PictureCopy {
  public:
   /// `filter`: GL_NEAREST or GL_LINEAR.

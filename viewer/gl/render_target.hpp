@@ -8,7 +8,7 @@
 namespace yuragi::viewer::gl {
 
 /// An off-screen framebuffer, which needs no visible window: several samples a pixel, resolved into one; with depth and
-/// stencil. Needs a current context. Throws std::runtime_error where the driver cannot make it.
+/// stencil. Needs a current context. Throws std::runtime_error if the driver cannot make it.
 class RenderTarget {
  public:
   /// As many samples as asked for, or as the driver has; see samples().
@@ -18,17 +18,17 @@ class RenderTarget {
   int height_px() const { return height_px_; }
   int samples() const { return samples_; }
 
-  /// From the next begin() on only this part (0 to 1] of the pixels of the width and of the height is drawn, and
-  /// resolve() fills in those between. Not with several samples a pixel: then it stays 1.
+  /// From the next begin() on only this part (0 to 1] of the width and of the height is drawn, and resolve()
+  /// interpolates the pixels. Not with several samples a pixel: then it stays 1.
   void set_drawn_side(float part);
   int drawn_width_px() const { return drawn_width_px_; }
   int drawn_height_px() const { return drawn_height_px_; }
 
-  /// What is drawn from now on goes into the samples.
+  /// From now on draws into the samples.
   void begin();
-  /// Resolves the samples to pixels; what is drawn from now on (the overlay) goes over these.
+  /// Resolves the samples to pixels. Later drawing (the overlay) goes over these.
   void resolve();
-  /// What is read and drawn from now on are these pixels, which resolve() has made.
+  /// From now on reads and draws the pixels that resolve() has made.
   void bind_resolved() const;
   /// Copies the pixels to the window's framebuffer.
   void show(int window_width_px, int window_height_px);

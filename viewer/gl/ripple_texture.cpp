@@ -19,7 +19,7 @@ constexpr double kShortest = 20.0;  // finer ones would show the texels
 }  // namespace
 
 Texture make_ripple_texture() {
-  // A sum of plane waves in all directions, each as steep as the next.
+  // A sum of plane waves in all directions, all of the same steepness.
   const math::RandomStream random(0, math::stream_id("viewer ripples"));
   std::vector<double> slopes(2 * kRippleTexels * kRippleTexels, 0.0);
   const double wave_slope = 2.0 * static_cast<double>(kRippleDeviation) / std::sqrt(static_cast<double>(kRippleWaves));

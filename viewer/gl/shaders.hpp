@@ -6,7 +6,7 @@
 /// The text of viewer/gl/shaders/*/*.glsl, which the build puts into the program.
 namespace yuragi::viewer::gl::shaders {
 
-extern const std::string_view kCommon;  ///< in front of each of the others
+extern const std::string_view kCommon;  ///< prepended to each of the others
 extern const std::string_view kShadeFrag;
 extern const std::string_view kBankVert;
 extern const std::string_view kBankFrag;

@@ -11,7 +11,7 @@ ShadowMap::ShadowMap(int texels) : texels_(texels) {
                nullptr);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  // One texture, looked up in two ways: the share that is nearer than a depth, and the depth itself.
+  // One texture with two lookups: the share that is nearer than a depth, and the depth itself.
   for (const Sampler* sampler : {&compared_, &plain_}) {
     glSamplerParameteri(sampler->name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glSamplerParameteri(sampler->name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -33,7 +33,7 @@ ShadowMap::ShadowMap(int texels) : texels_(texels) {
 }
 
 void ShadowMap::begin() {
-  // Not to be read while it is drawn.
+  // Must not be read while it is drawn.
   for (const TextureUnit unit : {kShadowUnit, kShadowDepthUnit}) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, 0);

@@ -4,15 +4,15 @@
 
 namespace yuragi::viewer::gl {
 
-/// How far from the sun the nearest thing is, over a square. Shaders look it up by sunlight_at() (common.glsl). With a
-/// stencil, for ScreenDoor. Needs a current context. Throws std::runtime_error where the driver cannot make it.
+/// The distance from the sun to the nearest surface, over a square. Shaders use it through sunlight_at() (common.glsl).
+/// With a stencil, for ScreenDoor. Needs a current context. Throws std::runtime_error if the driver cannot make it.
 class ShadowMap {
  public:
   explicit ShadowMap(int texels);
 
   int texels() const { return texels_; }
 
-  /// What is drawn from now on goes into the map.
+  /// From now on draws into the map.
   void begin();
   /// The map can be looked up; the framebuffer to draw into is the caller's to bind.
   void end();

@@ -7,11 +7,11 @@
 
 namespace yuragi::viewer::gl {
 
-/// Draws many strips of triangles as one mesh. Where the processor draws, hairs cost a quarter less so than as
-/// instances (llvmpipe 22.3: 8.2 ms against 10.6).
+/// Draws many strips of triangles as one mesh. If the processor draws, hairs cost a quarter less than as instances
+/// (llvmpipe 22.3: 8.2 ms against 10.6).
 ///
-/// A vertex shader finds corner gl_VertexID & 255 of strip gl_VertexID >> 8, and what it needs of the strip in a
-/// texture buffer. Needs a current context. Allocates when a number of corners is first drawn.
+/// A vertex shader finds corner gl_VertexID & 255 of strip gl_VertexID >> 8, and the strip's data in a texture buffer.
+/// Needs a current context. Allocates when a number of corners is first drawn.
 class StripIndices {
  public:
   static constexpr int kCornerBits = 8;  // hair.vert.glsl and reed.vert.glsl have the same number

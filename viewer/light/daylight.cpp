@@ -11,9 +11,9 @@
 namespace yuragi::viewer::light {
 namespace {
 
-/// The clear sky with the sun at a height. Chosen by eye: the evening (8.5 degrees) is the oldest, and the others
-/// follow what photographs and skies computed by single scattering show: the sun's side goes from white over orange to
-/// red, the other side and the zenith stay blue until the stars come out.
+/// The clear sky with the sun at a height. Chosen by eye: the evening (8.5 degrees) was set first, and the others
+/// follow photographs and skies computed by single scattering: the sun's side goes from white over orange to red, the
+/// other side and the zenith stay blue until the stars come out.
 struct SkyColors {
   float sun_height_deg;
   glm::vec3 zenith, horizon_near, horizon_far;
@@ -125,7 +125,7 @@ const std::array kSkies{
               {0.98F, 1.32F, 1.82F}},
 };
 
-/// Between two rows the logarithm goes evenly: light spans a factor of a thousand.
+/// The logarithm is linear between two rows: light spans a factor of a thousand.
 glm::vec3 between(const glm::vec3& a, const glm::vec3& b, float share) {
   constexpr float kLeast = 1e-5F;
   return glm::exp(glm::mix(glm::log(a + kLeast), glm::log(b + kLeast), share)) - kLeast;
@@ -156,26 +156,25 @@ float rise(double low, double high, double value) {
   return static_cast<float>(share * share * (3.0 - 2.0 * share));
 }
 
-// Outside of the air, in Light's unit: the evening's sun is as bright as its sky was painted.
+// Outside of the atmosphere, in Light's unit: chosen so that the evening's sun is as bright as in the painted sky.
 constexpr glm::vec3 kSunOutside(13.9F, 12.4F, 11.4F);
-// Of air straight overhead, in the red, green and blue of a screen (610, 540 and 465 nm; w: their wavelength in
-// micrometres): molecules, 0.008735 w^-4.08; 0.3 cm of ozone; a little dust, 0.05 w^-1.3.
+// Optical depth of air straight overhead, in the red, green and blue of a screen (610, 540 and 465 nm; w: their
+// wavelength in micrometres): molecules, 0.008735 w^-4.08; 0.3 cm of ozone; a little dust, 0.05 w^-1.3.
 constexpr glm::vec3 kAirDepth(0.196F, 0.244F, 0.334F);
-// Brighter than it is, by some thousand times, as a night in a film: a picture of a real one would be black beside a
-// lamp.
+// Some thousand times brighter than in reality, as a night in a film: a realistic one would be black beside a lamp.
 constexpr glm::vec3 kFullMoon(0.075F, 0.088F, 0.112F);
 constexpr glm::vec3 kMoonlitSky(0.0016F, 0.0029F, 0.0058F);
 constexpr glm::vec3 kTurf(0.055F, 0.065F, 0.022F);  // what it reflects
 constexpr glm::vec3 kOvercast(0.93F, 0.99F, 1.06F);
 constexpr glm::vec3 kOvercastNight(0.70F, 0.96F, 1.40F);
 
-// The share of the light that an overcast sky lets through. By night less, and it is seen as darker than it shines: a
-// grey sky that is brighter than the land looks like a dim day.
+// The share of the light that an overcast sky lets through. It is less by night, and the sky is drawn darker than its
+// light: a grey sky brighter than the land looks like a dim day.
 constexpr float kThroughClouds = 0.30F;
 constexpr float kThroughCloudsByNight = 0.22F;
 constexpr float kNightCloudsSeen = 0.45F;
 
-constexpr float kCloudShadow = 0.6F;  // of the sun's light, that a cloud holds back
+constexpr float kCloudShadow = 0.6F;  // share of the sun's light that a cloud blocks
 
 }  // namespace
 
@@ -194,7 +193,7 @@ Light daylight(const Sky& sky) {
   const float moon_in_dark = moon * rise(-3.5, -10.0, sky.sun.height_deg);
   const float covered = rise(0.45, 1.0, sky.clouds);
 
-  // Clouds spread what they hide of the sun over the whole sky, and send three quarters back up.
+  // Clouds scatter the sunlight that they block over the whole sky, and three quarters of it back up.
   const glm::vec3 direct = is_night ? kFullMoon * moon_in_dark : sunlight_at(sky.sun.height_deg);
   const glm::dvec3 to_sun = direction_of(is_night ? sky.moon : sky.sun);
   const glm::vec3 moonlit = kMoonlitSky * moon_in_dark;
@@ -231,8 +230,8 @@ Light daylight(const Sky& sky) {
                               0.28 * static_cast<double>(rise(0.65, 1.0, sky.clouds));
   const float stars = rise(-7.0, -15.0, sky.sun.height_deg) * (1.0F - covered) * (1.0F - 0.6F * moon);
   light.air = {1.0F, static_cast<float>(haze_per_m), static_cast<float>(clouds_begin), stars};
-  // Shadows of single clouds: none by night, of an overcast sky, or in fog. There are as many as clouds, which are
-  // where a mean of two layers of noise is above clouds_begin: one layer is spread wider.
+  // Shadows of single clouds: none by night, under an overcast sky, or in fog. Clouds are where the mean of two layers
+  // of noise is above clouds_begin; one layer alone has a wider spread.
   const float held_back =
       kCloudShadow * (1.0F - covered) * rise(0.0, 6.0, sky.sun.height_deg) * rise(0.9, 0.5, sky.haze);
   light.drift = {0.0F, 0.0F, held_back, 0.5F + 1.4F * (static_cast<float>(clouds_begin) - 0.45F)};

@@ -9,15 +9,15 @@ namespace yuragi::viewer::light {
 namespace {
 
 constexpr double kMinHeat = 0.01;
-/// After a jump in time the light is what it is, as after the first picture; and where no time has passed: that is
-/// another stream, or a test.
+/// After a jump in time the light is as after the first picture; also if no time has passed: that is another stream, or
+/// a test.
 constexpr double kJump_s = 2.0;
 constexpr float kFollowing = 0.38F;
 
 }  // namespace
 
 Fires nearest_fires(std::span<const Fire> fires, const glm::vec3& eye_m) {
-  // Sorted as they come; there are few.
+  // Sorted by insertion; there are few.
   std::array<const Fire*, Fires::kMost> nearest{};
   std::size_t count = 0;
   const auto is_nearer = [&](const Fire& a, const Fire& b) {

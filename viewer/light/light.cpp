@@ -10,13 +10,13 @@
 namespace yuragi::viewer::light {
 namespace {
 
-constexpr float kNearbyCosine = 0.995F;  // suns within 6 degrees go over into each other
+constexpr float kNearbyCosine = 0.995F;  // suns within 6 degrees are blended into each other
 
 float luminance(const glm::vec4& light) {
   return 0.2126F * light.r + 0.7152F * light.g + 0.0722F * light.b;
 }
 
-/// The direction between two, which may be opposite; w as it is.
+/// The direction between two, which can be opposite; w as it is.
 glm::vec4 turned(const glm::vec4& a, const glm::vec4& b, float share) {
   const glm::vec3 between = glm::mix(glm::vec3(a), glm::vec3(b), share);
   const float length = glm::length(between);

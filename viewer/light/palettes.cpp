@@ -7,23 +7,23 @@
 namespace yuragi::viewer::light {
 namespace {
 
-/// What each thing reflects of red, green and blue light, 0 to 1 (not a screen's values: those are about the square
-/// root). Chosen by eye.
+/// Reflectance of each thing in red, green and blue, 0 to 1 (linear; a screen's values are about the square root).
+/// Chosen by eye.
 struct Palette {
-  glm::vec3 lush;   ///< grass where it is moist,
+  glm::vec3 lush;   ///< grass in moist places,
   glm::vec3 fresh;  ///< in between,
-  glm::vec3 straw;  ///< and where it is dry,
+  glm::vec3 straw;  ///< and in dry places,
   glm::vec3 foot;   ///< and of every blade near the ground
   float dryness;    ///< more straw above 0, less below it; -1 to 1
-  float flowers;    ///< how many there are: 1 as in a meadow
+  float flowers;    ///< number of flowers: 1 as in a meadow
   std::array<glm::vec3, 3> petals;
-  glm::vec3 leaves;   ///< factor on the leaves of trees, but not on blossom,
+  glm::vec3 leaves;   ///< factor for the leaves of trees, but not for blossom,
   glm::vec3 turned;   ///< and on those that have turned the farthest
   float hanging;      ///< the share of leaves that hang: 0 is a bare tree
   glm::vec3 woods;    ///< factor on the woods far away
-  float snow;         ///< on hills and mountains, 0 to 1
-  float colorful;     ///< of the whole picture: 0 is black and white
-  float exposure_ev;  ///< brighter by so many doublings
+  float snow;         ///< snow on hills and mountains, 0 to 1
+  float colorful;     ///< saturation of the whole picture: 0 is black and white
+  float exposure_ev;  ///< brighter by this many doublings
 };
 
 // In the order of look::Palette.
@@ -120,7 +120,7 @@ constexpr std::array<Palette, 6> kPalettes{{
      .exposure_ev = 0.7F},
 }};
 
-/// Of what the ground is made, where no grass grows.
+/// The material of the ground where no grass grows.
 struct Earth {
   glm::vec3 color;
   float relief;  ///< how uneven it looks

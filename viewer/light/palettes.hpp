@@ -5,7 +5,7 @@
 
 namespace yuragi::viewer::light {
 
-/// Puts the colors of what grows, and of the ground, into `light`, and the size of the picture on it.
+/// Puts the colors of plants and ground into `light`, and the size of the image on the ground.
 void set_colors(const look::Look& look, Light& light);
 
 }  // namespace yuragi::viewer::light

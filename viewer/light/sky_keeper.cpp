@@ -17,26 +17,26 @@ constexpr double kSecondsInDay = 86400.0;
 // The evening that the first pictures had.
 constexpr SkyPlace kEveningSun{8.5, 239.0};
 
-// The exposure of the evening, and how far it follows the light: not all the way, so that a night stays darker than a
-// day.
+// The exposure of the evening, and the share by which it follows the light: below 1, so that a night stays darker than
+// a day.
 constexpr double kEveningExposure = 0.545;
 constexpr double kEveningBrightness = 1.65;
 constexpr double kFollowing = 0.62;
-constexpr double kFollowingInTheDark = 0.74;  // but a night is to be seen
-// Darker than a clear night of full moon the eye is at its end, and follows little: starlight is darker, and an
-// overcast night without a moon the darkest.
+constexpr double kFollowingInTheDark = 0.74;  // so that a night is visible
+// In less light than a clear night of full moon the eye cannot adapt further, and the exposure follows little:
+// starlight is darker, and an overcast night without a moon the darkest.
 constexpr double kMoonlitBrightness = 0.055;
 constexpr double kFollowingStarlight = 0.44;
 constexpr double kAdapting_s = 12.0;
 
-// Clouds are carried by a wind that is about twice as fast as the one at the ground.
+// Clouds move with a wind about twice as fast as that at the ground.
 constexpr double kCloudHeight_m = 1500.0;
 constexpr double kWindAloft = 2.0;
 constexpr double kFastestClouds_m_s = 25.0;
 constexpr double kWindSmoothing_s = 60.0;
-constexpr double kDriftPeriod = 200.0;  // after so much drift the noise's tiles lie as before (sky.frag.glsl)
+constexpr double kDriftPeriod = 200.0;  // the noise's tiles repeat after this drift (sky.frag.glsl)
 
-/// How far the sun is ahead of the clock at a place, which assumes that all days are equally long.
+/// How far the sun is ahead of the clock at a place; assumes that all days are equally long.
 double sun_ahead_s(double utc_s) {
   const double days = utc_s / kSecondsInDay - 10957.5;
   const double mean_longitude_deg = 280.46646 + 0.98564736 * days;
@@ -44,7 +44,7 @@ double sun_ahead_s(double utc_s) {
   return ahead_deg / 15.0 * kSecondsPerHour;
 }
 
-/// The moment of this day at which a sundial at this longitude shows the hour.
+/// The moment of this day at which a sundial at this longitude shows this hour.
 double at_solar_time_s(double hour, double utc_s, double longitude_deg) {
   const double ahead_s = longitude_deg / 15.0 * kSecondsPerHour + sun_ahead_s(utc_s);
   const double midnight_s = std::floor((utc_s + ahead_s) / kSecondsInDay) * kSecondsInDay;
@@ -72,7 +72,7 @@ Sky sky_of(const look::Look& look, double utc_s) {
     case look::SunChoice::kEvening:
       break;
     case look::SunChoice::kFixed:
-      // With a moon opposite, for a sun that has set.
+      // The moon is opposite, for a sun that has set.
       sky.sun = {look.sun_height_deg, look.sun_azimuth_deg};
       sky.moon = {32.0, look.sun_azimuth_deg + 180.0};
       sky.moon_lit_share = look.sun_height_deg < 0.0 ? 0.95 : 0.0;
@@ -120,7 +120,7 @@ const Light& SkyKeeper::advance(double utc_s, double dt_s, const glm::dvec2& win
   now.drift = {drift_.x, drift_.y, now.drift.z, now.drift.w};
   set_colors(look_, now);
   const double wanted_log = exposure_log_for(now);
-  // While the look fades, the exposure goes with the fade: what was asked for is not answered by a slow eye.
+  // During a fade of the look the exposure follows it at once: the slow adaptation does not delay a requested change.
   const bool follows_at_once = !has_light_ || fade_s_ < over_s_;
   exposure_log_ += (follows_at_once ? 1.0 : share_of(dt_s, kAdapting_s)) * (wanted_log - exposure_log_);
   now.air.x =

@@ -7,20 +7,20 @@
 
 namespace yuragi::viewer::light {
 
-/// The sky that a look asks for at a moment (seconds since 1970, UTC).
+/// The sky of a look at a moment (seconds since 1970, UTC).
 Sky sky_of(const look::Look& look, double utc_s);
 
-/// The light of a look at a moment, to which the exposure has adapted.
+/// The light of a look at a moment, with the exposure adapted.
 Light light_of(const look::Look& look, double utc_s);
 
 /// The light as time passes: the sun's way, clouds that drift with the wind, an exposure that follows slowly, and a
-/// cross-fade where the look changes. Nothing jumps. Pure: time is a parameter. Thread-safe: no.
+/// cross-fade when the look changes. Nothing jumps. Pure: time is a parameter. Thread-safe: no.
 class SkyKeeper {
  public:
-  /// How long a change of the look takes.
+  /// Duration of a change of the look.
   static constexpr double kFade_s = 4.0;
 
-  /// The look from now on, at once; or by a cross-fade of over_s (above 0), where it is another.
+  /// Sets the look at once, or, if it is a different one, by a cross-fade of over_s (above 0).
   void start(const look::Look& look);
   void set_look(const look::Look& look, double over_s = kFade_s);
   const look::Look& look() const { return look_; }

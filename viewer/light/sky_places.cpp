@@ -36,7 +36,7 @@ double obliquity_deg(double centuries) {
   return 23.439291 - 0.0130042 * centuries;
 }
 
-/// From the ecliptic's coordinates (chapter 13).
+/// Converts ecliptic coordinates (chapter 13).
 StarPlace on_equator(double longitude_deg, double latitude_deg, double tilt_deg) {
   const double y =
       sine_deg(longitude_deg) * cosine_deg(tilt_deg) - std::tan(glm::radians(latitude_deg)) * sine_deg(tilt_deg);
@@ -46,7 +46,7 @@ StarPlace on_equator(double longitude_deg, double latitude_deg, double tilt_deg)
           glm::degrees(std::asin(std::clamp(sine, -1.0, 1.0)))};
 }
 
-/// Where it is seen from the middle of the earth (chapters 12 and 13).
+/// The place as seen from the middle of the earth (chapters 12 and 13).
 SkyPlace above_horizon(const StarPlace& star, double utc_s, double latitude_deg, double longitude_deg) {
   const double sidereal_deg = 280.46061837 + 360.98564736629 * days_since_2000(utc_s) + longitude_deg;
   const double hour_deg = sidereal_deg - star.right_ascension_deg;
@@ -58,7 +58,7 @@ SkyPlace above_horizon(const StarPlace& star, double utc_s, double latitude_deg,
           whole_turn_deg(180.0 + glm::degrees(std::atan2(sine_deg(hour_deg), south)))};
 }
 
-/// How much the air raises what is seen near the horizon (chapter 16, by G. Saemundsson 1986).
+/// The apparent rise near the horizon by refraction (chapter 16, by G. Saemundsson 1986).
 double refraction_deg(double height_deg) {
   const double height = std::max(height_deg, -1.0);
   const double raised_deg = 1.02 / 60.0 / std::tan(glm::radians(height + 10.3 / (height + 5.11)));
@@ -120,7 +120,7 @@ SkyPlace moon_place(double utc_s, double latitude_deg, double longitude_deg) {
 }
 
 double moon_lit_share(double utc_s) {
-  // The angle between the two (chapter 48); the sun is so far away that the moon's side hardly matters.
+  // The angle between the two (chapter 48); the sun is so far away that the moon's latitude hardly matters.
   const double t = centuries_since_2000(utc_s);
   const double cosine = cosine_deg(moon_latitude_deg(t)) * cosine_deg(moon_longitude_deg(t) - sun_longitude_deg(t));
   return 0.5 * (1.0 - cosine);

@@ -4,7 +4,7 @@
 
 namespace yuragi::viewer::light {
 
-/// Where something in the sky is seen.
+/// Apparent place of an object in the sky.
 struct SkyPlace {
   double height_deg = 0.0;   ///< above the horizon
   double azimuth_deg = 0.0;  ///< 0 north, 90 east
@@ -13,7 +13,7 @@ struct SkyPlace {
 /// The unit vector toward it, in the world.
 glm::dvec3 direction_of(const SkyPlace& place);
 
-/// Where something stands among the stars: the equator's coordinates of its date.
+/// Place among the stars: equatorial coordinates of the date.
 struct StarPlace {
   double right_ascension_deg = 0.0;
   double declination_deg = 0.0;
@@ -25,13 +25,13 @@ struct StarPlace {
 /// The sun, to about 0.01 degree from 1900 to 2100 (J. Meeus 1998, "Astronomical Algorithms", 2nd edition, chapter 25,
 /// low accuracy).
 StarPlace sun_among_stars(double utc_s);
-/// The same where it is seen, raised by the air's refraction (chapters 12, 13 and 16).
+/// The apparent place, raised by refraction (chapters 12, 13 and 16).
 SkyPlace sun_place(double utc_s, double latitude_deg, double longitude_deg);
 
 /// The moon, to about 0.3 degree ("The Astronomical Almanac", section D, low-precision formulae for geocentric
 /// coordinates).
 StarPlace moon_among_stars(double utc_s);
-/// The same where it is seen, lowered by its parallax.
+/// The apparent place, lowered by parallax.
 SkyPlace moon_place(double utc_s, double latitude_deg, double longitude_deg);
 
 /// The share of the moon's disc that is lit, 0 (new) to 1 (full).

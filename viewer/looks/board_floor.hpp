@@ -8,14 +8,14 @@ namespace yuragi::viewer::looks {
 /// Draws a Floor. Needs a current context.
 class BoardFloor {
  public:
-  /// `through`: the share of the sun's light that comes through what shades it.
+  /// `through`: the share of the sun's light that passes through the shading object.
   BoardFloor(const meshes::Floor& floor, const glm::vec3& through);
 
   /// The View is bound (ViewBuffer::set).
   void draw() const;
 
-  /// Where there is no shadow map: draws the floor in shade wherever what `draw_shapes` draws, flattened onto it,
-  /// covers it. That gives the shader its points in the attributes 0 to 2 (x, y, z).
+  /// If there is no shadow map: draws in shade the part of the floor that the output of `draw_shapes`, flattened onto
+  /// it, covers. The shader gets its points in the attributes 0 to 2 (x, y, z).
   template <class DrawShapes>
   void draw_in_shade(DrawShapes&& draw_shapes) const {
     glUseProgram(shade_program_.name());

@@ -15,16 +15,16 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kKeep = 0.15F;  // of a level: so far beyond its bounds it is kept
+constexpr float kKeep = 0.15F;  // share of a level: it is kept this far beyond its bounds
 constexpr float kNearest_m = 0.1F;
-constexpr std::size_t kLooks = 12;            // joints along each side that are asked how far they are
+constexpr std::size_t kLooks = 12;            // joints along each side whose distance is computed
 constexpr float kHalfHem_m = 0.0015F;         // half the thickness of a hem
 const glm::vec3 kLinen{0.70F, 0.63F, 0.51F};  // curtain.frag.glsl's
 constexpr float kDarkestPaint = 0.012F;
 constexpr float kLightestPaint = 0.78F;
 constexpr float kShadowCell_px = 12.0F;  // of a shadow's mesh
 constexpr float kThinnestWire_px = 0.8F;
-constexpr float kThinnest_px = 0.2F;  // half as thick, a rim is not seen
+constexpr float kThinnest_px = 0.2F;  // a rim below half of this is invisible
 
 /// How wide the cells of the coarsest mesh are that does, at most, pixels.
 float cell_px_of(look::Quality quality) {
@@ -40,11 +40,11 @@ float cell_px_of(look::Quality quality) {
   return 3.0F;
 }
 
-/// A curtain's folds hang down: its cells are half as wide as another cloth's, and twice as high.
+/// A curtain's folds hang down: its cells are half as wide as those of another cloth, and twice as high.
 constexpr float kFoldedShare = 0.5F;
 constexpr int kFoldedLevels = 2;
 
-/// How much finer than along a row a cloth is divided along a column, as a power of 2, for cells of the right shape.
+/// How much more finely a cloth is divided along a column than along a row, as a power of 2, for well-shaped cells.
 int finer_down(meshes::ClothStyle style, const meshes::ClothMeasure& lies) {
   const float across_m = glm::length(lies.per_column_m);
   const float down_m = glm::length(lies.per_row_m);
@@ -53,28 +53,28 @@ int finer_down(meshes::ClothStyle style, const meshes::ClothMeasure& lies) {
   return static_cast<int>(std::lround(std::clamp(std::log2(down_m / across_m), -8.0F, 8.0F))) - folded;
 }
 
-/// From a banner's pole to the end of its arm along the ground, at rest and in a pose.
+/// From a banner's pole to the end of its arm, horizontally, at rest and in a pose.
 glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
   const std::size_t end = cloth.columns - 1;
   const glm::vec2 at_rest_m(cloth.rest_x_m[end] - cloth.rest_x_m[0], cloth.rest_z_m[end] - cloth.rest_z_m[0]);
   return pose == nullptr ? at_rest_m : at_rest_m + glm::vec2(pose->offset_x_m[end], pose->offset_z_m[end]);
 }
 
-/// A screen's value (IEC 61966-2-1, sRGB) as light, of cloth: none is quite black or reflects all.
+/// A screen's value (IEC 61966-2-1, sRGB) as reflectance of cloth, which is never quite black or white.
 float paint_of(std::uint8_t value) {
   const float part = static_cast<float>(value) / 255.0F;
   const float light = part <= 0.04045F ? part / 12.92F : std::pow((part + 0.055F) / 1.055F, 2.4F);
   return kDarkestPaint + (kLightestPaint - kDarkestPaint) * light;
 }
 
-/// w: 1 where there is one.
+/// w: 1 if there is one.
 glm::vec4 paint_of(const std::optional<look::Color>& color) {
   if (!color) return glm::vec4(0.0F);
   return {paint_of(color->red), paint_of(color->green), paint_of(color->blue), 1.0F};
 }
 
-/// The share of the sun's light that comes through a curtain, on average over its picture or its stripes: of the
-/// cloth's colour, deeper, as the cloth shader has it.
+/// The share of the sun's light that passes through a curtain, on average over its picture or its stripes: the cloth's
+/// colour, more saturated, as in the cloth shader.
 glm::vec3 light_through(const look::ClothLook& look) {
   constexpr float kThrough = 0.62F;
   glm::vec3 paint(look.color ? glm::vec3(paint_of(look.color)) : kLinen);
@@ -101,7 +101,7 @@ gl::Program program_of(meshes::ClothStyle style) {
   return gl::link_program("curtain", gl::shaders::kClothVert, gl::shaders::kCurtainFrag);
 }
 
-/// Of its vertices; `none` where there are none.
+/// Bounds of its vertices; `none` if there are none.
 meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& none) {
   if (mesh.vertices().empty()) return none;
   meshes::Bounds bounds{mesh.vertices()[0].place_m, mesh.vertices()[0].place_m};
@@ -202,8 +202,8 @@ void ClothRenderer::draw(const meshes::View& view) {
 }
 
 void ClothRenderer::draw_shadow(const meshes::View& view) {
-  // It may be coarse with quality low. Otherwise the sun has to see what the last picture's eye saw, or the cloth would
-  // shade itself.
+  // It can be coarse with quality low. Otherwise the sun must see the mesh that the eye saw in the last picture, or the
+  // cloth would shade itself.
   if (is_shadow_coarse_) {
     shadow_level_ = level_in(view, std::max(cell_px_, kShadowCell_px), shadow_level_);
   } else if (!level_) {

@@ -42,9 +42,10 @@ class ClothRenderer : public SceneRenderer {
   ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const look::ClothLook& look,
                 look::Quality quality, const meshes::SolidMesh& holder);
 
-  /// The level of detail whose cells are at most so many pixels of `view` wide; that of `before`, where it nearly is.
+  /// Returns the level of detail whose cells are at most `cell_px` pixels of `view` wide; keeps that of `before` if it
+  /// nearly is.
   int level_in(const meshes::View& view, float cell_px, const std::optional<int>& before) const;
-  /// From the view's eye to the cloth.
+  /// Distance from the view's eye to the cloth.
   float nearest_m(const meshes::View& view) const;
   /// The sheet of a level, of the present pose.
   ClothSheet& sheet(int level);
@@ -52,17 +53,17 @@ class ClothRenderer : public SceneRenderer {
   const pose::GridSkeleton* cloth_;
   meshes::ClothMeasure lies_;
   meshes::ClothStyle style_;
-  bool is_vane_;  ///< what holds it turns with its fixed edge
+  bool is_vane_;  ///< its holder turns with its fixed edge
   pose::PointPositions points_;
   float cell_px_;                                          ///< along a row
   int finer_down_;                                         ///< ClothSurface
-  bool is_shadow_coarse_;                                  ///< with quality low cloth looks no shadow up
+  bool is_shadow_coarse_;                                  ///< with quality low cloth receives no shadows
   std::optional<int> level_, shadow_level_;                ///< of the last picture
   std::array<std::optional<ClothSheet>, kLevels> sheets_;  ///< made when first needed
   std::array<bool, kLevels> is_moved_{};
   meshes::Bounds holder_bounds_;
   Solids holder_;
-  float wire_m_;  ///< how thick the rings of what holds it are
+  float wire_m_;  ///< thickness of the holder's rings
   std::optional<meshes::Floor> floor_;
   std::optional<BoardFloor> boards_;  ///< of the floor
   gl::Program program_;

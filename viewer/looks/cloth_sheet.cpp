@@ -10,7 +10,7 @@ constexpr GLuint kNormal = 3;
 constexpr GLuint kBend = 6;
 constexpr GLuint kPlace = 7;
 
-/// Folds narrower than this keep little of the sky's light away.
+/// Folds narrower than this block little of the sky's light.
 constexpr float kBendReach_m = 0.03F;
 
 }  // namespace

@@ -10,9 +10,8 @@ namespace yuragi::viewer::looks {
 /// The triangles of a cloth on the GPU, at one level of detail (ClothSurface), and of the rim around it. Needs a
 /// current context.
 ///
-/// A shader finds the point in the attributes 0 to 2 (x, y, z, metres), its normal in 3 to 5, how much the cloth is
-/// bent there in 6 (ClothSurface::write_bends), and the place on the cloth in 7 and 8. Allocates nothing after it is
-/// made.
+/// Attributes: the point 0 to 2 (x, y, z, metres), its normal 3 to 5, the bend of the cloth there 6
+/// (ClothSurface::write_bends), the place on the cloth 7 and 8. Allocates nothing after it is made.
 class ClothSheet {
  public:
   ClothSheet(const meshes::GridLayout& joints, const meshes::ClothMeasure& lies, int level, int finer_down);
@@ -22,7 +21,7 @@ class ClothSheet {
 
   /// Draws the cloth with the program in use.
   void draw() const;
-  /// Draws its rim, which is as thick as said at the last call of this.
+  /// Draws its rim. The first call after move_to() sets its thickness.
   void draw_rim(float half_thickness_m);
 
  private:

@@ -18,9 +18,9 @@ constexpr int kRows = 256;  // the shader has the same number
 constexpr int kColumnsInAHurry = 64;  // while the sky changes
 
 constexpr float kFilter_rad = 0.02F;   // columns aside that a filter reaches into
-constexpr float kDriftedAside = 6.0F;  // at most so far do clouds move aside in the map, of what they have drifted
+constexpr float kDriftedAside = 6.0F;  // maximum sideways displacement of clouds in the map, as a part of their drift
 
-constexpr float kMinSun = -0.12F;  // the sine of its height; farther below the clouds have the moon's light
+constexpr float kMinSun = -0.12F;  // sine of its height; at lower heights the moon lights the clouds
 
 }  // namespace
 
@@ -61,7 +61,7 @@ void CloudMap::draw_columns(const Map& map, int first, int count) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-/// Those of the strips from `first` up to `end` that are missing.
+/// Draws the missing strips from `first` up to `end`.
 void CloudMap::draw_missing(std::size_t first, std::size_t end) {
   while (first < end) {
     std::size_t next = first;
@@ -88,7 +88,7 @@ void CloudMap::advance(const light::Light& light, const gl::Texture& noise, cons
            std::abs(a.clouds_begin - b.clouds_begin) < tolerance;
   };
   const Sky before = std::exchange(now_, sky_of(light));
-  for (const GLint unit : {gl::kCloudsFromUnit, gl::kCloudsToUnit}) {  // not to be read while they are drawn
+  for (const GLint unit : {gl::kCloudsFromUnit, gl::kCloudsToUnit}) {  // must not be read while they are drawn
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, 0);
   }

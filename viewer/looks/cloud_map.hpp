@@ -13,21 +13,21 @@
 
 namespace yuragi::viewer::looks {
 
-/// Clouds as they are seen from the ground, in all directions: how much they cover, and how much light of the sun and
-/// of the sky comes to what one sees of them; without their color. Maps are drawn a few columns a picture, and shown
-/// with a cross-fade, moved by as much as the clouds have drifted since: what is costly about clouds is spread over
-/// seconds. Of the first one, what is in view is drawn before the picture, and the rest with the pictures after it.
-/// Needs a current context.
+/// Clouds as they are seen from the ground, in all directions: their cover, and how much light of the sun and of the
+/// sky reaches their visible side; without their color. Maps are drawn a few columns a picture, and shown with a
+/// cross-fade, moved by as much as the clouds have drifted since: so the cost of clouds is spread over seconds. The
+/// visible part of the first map is drawn before the picture, and the rest with the pictures after it. Needs a current
+/// context.
 class CloudMap {
  public:
   CloudMap();
 
-  /// Goes on with the next map, or begins with a first one where there is none yet or the sky is another than at the
-  /// last call. Then all that `view` and its mirrored one show is there. Binds another framebuffer. `noise`: the tile
-  /// of viewer/gl/noise_texture.hpp.
+  /// Continues with the next map, or begins a first one if there is none yet or the sky has changed since the last
+  /// call; then everything that `view` and its mirrored view show is drawn first. Binds another framebuffer. `noise`:
+  /// the tile of viewer/gl/noise_texture.hpp.
   void advance(const light::Light& light, const gl::Texture& noise, const meshes::View& view);
 
-  /// For `sky`, which is in use: the maps in view, and how far the clouds have drifted since.
+  /// Sets the uniforms of `sky`, the program in use: the maps in view, and the drift of the clouds since.
   void bind(const gl::Program& sky) const;
 
  private:
@@ -42,7 +42,7 @@ class CloudMap {
     Sky sky;
   };
   static constexpr int kColumns = 2048;    // the shader has the same number
-  static constexpr int kStripColumns = 4;  // so many a picture, while the sky stays as it is
+  static constexpr int kStripColumns = 4;  // columns per picture while the sky is unchanged
   static constexpr std::size_t kStrips = kColumns / kStripColumns;
 
   static Sky sky_of(const light::Light& light);
@@ -56,8 +56,8 @@ class CloudMap {
   std::array<Map, 3> maps_;
   std::size_t from_ = 0, to_ = 1, next_ = 2;  // two are in view, one is being drawn
   int drawn_ = 0;                             // columns of the next
-  std::bitset<kStrips> missing_;              // of a first map, which is alone in view
-  std::size_t swept_ = 0;                     // strips of it that are there up to here
+  std::bitset<kStrips> missing_;              // of a first map, the only one in view
+  std::size_t swept_ = 0;                     // number of its strips that are drawn
   bool is_first_ = true;
   Sky now_;
 };

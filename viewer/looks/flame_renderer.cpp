@@ -18,17 +18,18 @@ namespace {
 constexpr std::size_t kRampColors = 256;
 constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
 
-// Of a flame as thick as its radius, in Light's unit: a wood fire is about as bright as a third of white paper in the
-// sun.
+// Brightness of a flame as thick as its radius, in Light's unit: a wood fire is about as bright as a third of white
+// paper in the sun.
 constexpr float kBodyBrightness = 0.30F;
 constexpr float kSheetBrightness = 2.2F;
 constexpr float kEmbersBrightness = 1.0F;
 constexpr glm::vec3 kGlow{0.050F, 0.017F, 0.004F};
-// On a surface at one metre, for each square metre of its outline: its radiance over the pi of a diffuse surface.
+// Illumination of a surface at one metre, for each square metre of the flame's outline: its radiance over the pi of a
+// diffuse surface.
 constexpr glm::vec3 kFireLight{0.95F, 0.43F, 0.13F};
-constexpr float kUsualHeat = 0.42F;  // of all points, on average
+constexpr float kUsualHeat = 0.42F;  // mean of all points
 
-// The shown axis follows the streamed one within this time, so that a place does not flash (WCAG 2.3.1):
+// The time constant with which the shown axis follows the streamed one, so that a place does not flash (WCAG 2.3.1):
 // flame_flash_test.cpp.
 constexpr double kFollowing_s = 0.65;
 constexpr double kJump_s = 1.0;
@@ -48,7 +49,7 @@ void filter_linearly(GLenum target) {
   }
 }
 
-/// Attributes of floats that follow one another in a buffer, so many each.
+/// Describes consecutive float attributes in a buffer, with these sizes.
 void set_attributes(std::initializer_list<GLint> sizes, GLuint divisor) {
   GLsizei stride = 0;
   for (const GLint size : sizes) stride += size * static_cast<GLsizei>(sizeof(float));
@@ -158,7 +159,7 @@ void FlameRenderer::move_to(const pose::Pose& pose) {
   } else {
     const double passed_s = std::abs(moment_.time_s - moved_at_s_);
     if (passed_s == 0.0 && burning.heat == streamed_heat_) return;  // the same picture again
-    // Another moment at the same time is of another stream, or a test: it is taken as it is.
+    // Another moment at the same time belongs to another stream, or a test: it is shown at once.
     const double share = passed_s > 0.0 && passed_s < kJump_s ? 1.0 - std::exp(-passed_s / kFollowing_s) : 1.0;
     volume_.move_to(*surface_, burning, static_cast<float>(share));
     moved_at_s_ = moment_.time_s;
@@ -250,7 +251,7 @@ void FlameRenderer::draw_light() {
 }
 
 void FlameRenderer::draw_contact() {
-  constexpr float kPartOfReach = 0.30F;  // the shade reaches so many bowls' radii as the shader has radii of a trunk
+  constexpr float kPartOfReach = 0.30F;  // the shade's reach in radii: of a bowl, as a part of that of a trunk
   glEnable(GL_POLYGON_OFFSET_FILL);      // in front of the ground
   glPolygonOffset(-2.0F, -2.0F);
   glUseProgram(contact_program_.name());
@@ -261,8 +262,8 @@ void FlameRenderer::draw_contact() {
 }
 
 void FlameRenderer::draw_bowl_shade() {
-  // Seen from the middle of the heat its edge falls on the ground so much farther out, on the side away from it; the
-  // flame's top throws it nearer, its foot farther.
+  // The shadow's edge on the ground, away from the middle of the heat; the flame's top throws it nearer, its foot
+  // farther.
   const glm::vec3 bowl_m = bowl_.embers_m;
   const float above_m = hot_middle_m_.y - bowl_m.y;
   if (!(bowl_m.y > 0.05F && above_m > 0.05F)) return;

@@ -16,8 +16,8 @@
 namespace yuragi::viewer::looks {
 
 /// Draws a surface that burns, over a bowl: a closed one as burning gas (FlameGas) with sparks, a flat one as a
-/// sheet. Its colours are those of the skeleton's ramp. Light is added to what is behind it as the tone curve nearly
-/// does (1 - (1 - a) (1 - b)), so that it is pale by day and glows by night.
+/// sheet. Its colours are those of the skeleton's ramp. Its light is added to the background nearly as by the tone
+/// curve (1 - (1 - a) (1 - b)), so that it is pale by day and glows by night.
 class FlameRenderer : public SceneRenderer {
  public:
   /// `surface` must outlive this.
@@ -49,7 +49,7 @@ class FlameRenderer : public SceneRenderer {
   gl::VertexArray no_attributes_;
   float height_m_ = 1.0F, width_m_ = 1.0F;
 
-  // Where the heat is, how much of it there is, and how much of that its light shows.
+  // The middle of the heat, its amount, and the share of it that the light shows.
   glm::vec3 hot_middle_m_{0.0F};
   float heat_ = 0.0F;
   float shown_heat_ = 0.0F;

@@ -12,8 +12,8 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-// Of the hairs of a limb: shorter ones are not seen; of those that are shorter than kAllHairs_px, a part is drawn, and
-// wider.
+// Size of a limb's hairs in the picture: shorter ones are not drawn; of those shorter than kAllHairs_px a part is
+// drawn, wider.
 constexpr float kMinHair_px = 2.0F;
 constexpr float kAllHairs_px = 12.0F;
 
@@ -112,7 +112,7 @@ void FurRenderer::draw(const meshes::View& view) {
 }
 
 void FurRenderer::draw_shadow(const meshes::View& view) {
-  // The ground needs no hairs of it; but hairs shade each other, where they look it up.
+  // The ground receives no shadow from them; but hairs shade each other if they receive shadows.
   if (do_hairs_shade_) ribbons_.draw(hair_, view);
   draw_skin(0.0F);
 }

@@ -11,11 +11,11 @@
 namespace yuragi::viewer::looks {
 
 /// Draws strands as the coat of an animal: underhair and guard hairs, several around each strand, over a pale skin that
-/// is seen where the coat parts. A body that is long enough is an animal asleep: it has limbs with a shorter coat
-/// besides (meshes::limbs_of).
+/// is visible where the coat parts. A body that is long enough is a sleeping animal: it also has limbs with a shorter
+/// coat (meshes::limbs_of).
 class FurRenderer : public SceneRenderer {
  public:
-  /// `strands` must outlive this. The better the quality, the more hairs.
+  /// `strands` must outlive this. A better quality has more hairs.
   FurRenderer(const pose::StrandSkeleton& strands, look::Quality quality);
 
   void move_to(const pose::Pose& pose) override;
@@ -30,11 +30,11 @@ class FurRenderer : public SceneRenderer {
   bool casts_shadow() const override { return true; }
 
  private:
-  /// With so many of the hairs on limbs (0 to 1).
+  /// `hair_share`: the share of the hairs on limbs to draw, 0 to 1.
   void draw_skin(float hair_share) const;
   void make_limbs(const meshes::Limbs& limbs);
 
-  bool do_hairs_shade_;  ///< with quality low hairs look no shadow up
+  bool do_hairs_shade_;  ///< with quality low hairs receive no shadows
   meshes::Body body_;
   StrandRibbons ribbons_;
   meshes::Partings partings_;

@@ -9,8 +9,8 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws streamed strands as blades of a meadow, from static buffers, tile by tile. Each picture only the bends of what
-/// is in view go to the GPU, where they become arcs. The GroundMaps are bound.
+/// Draws streamed strands as blades of a meadow, from static buffers, tile by tile. For each picture only the bends of
+/// the visible tiles are uploaded to the GPU, which makes arcs of them. The GroundMaps are bound.
 class GrassRenderer : public SceneRenderer {
  public:
   /// `strands` must outlive this.

@@ -7,13 +7,12 @@
 
 namespace yuragi::viewer::looks {
 
-/// Of the vertex array that is bound: `buffer` holds one array of `size` numbers for each attribute from `first` on.
+/// For the vertex array that is bound: `buffer` holds one array of `size` numbers for each attribute from `first` on.
 void describe_arrays(const gl::Buffer& buffer, GLuint first, GLuint count, std::size_t size);
 
 /// The triangles of a surface on the GPU, with smooth normals. Needs a current context.
 ///
-/// A shader finds the point in the attributes 0 to 2 (x, y, z, metres) and its normal in 3 to 5. Allocates nothing
-/// after it is made.
+/// Attributes: the point 0 to 2 (x, y, z, metres), its normal 3 to 5. Allocates nothing after it is made.
 class GridSheet {
  public:
   explicit GridSheet(const meshes::GridLayout& layout);

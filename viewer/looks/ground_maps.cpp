@@ -12,7 +12,7 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-// Unit 0 is for what a renderer has of its own.
+// Unit 0 is left for the renderers' own textures.
 
 void bind_texture(GLint unit, const gl::Texture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
@@ -87,7 +87,7 @@ void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* n
     if (near_by != nullptr) mean = glm::mix(mean, mean_of(*near_by, near_by->bend_east_rad.size()), near_by_share);
     waves_.fill(mean, texels_);
   }
-  // A node is in the middle of its texel.
+  // A node is at the centre of its texel.
   const glm::mat2 to_parts = glm::inverse(sides_m);
   const glm::vec2 corner_m =
       is_streamed ? grid.first_m - 0.5F * (grid.to_next_m + grid.to_next_row_m) : waves_.drifted_m();

@@ -5,7 +5,7 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-/// Samples along the longer side of a pixel's footprint: what lies flat is sharp at flat angles, too.
+/// Samples along the longer side of a pixel's footprint: horizontal surfaces are sharp also at flat angles.
 constexpr float kMaxAnisotropy = 8.0F;
 
 }  // namespace

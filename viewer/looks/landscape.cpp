@@ -24,19 +24,19 @@ namespace {
 constexpr GLsizei kSkyColumns = 40;
 constexpr GLsizei kSkyRows = 24;
 
-// Corners of hills are at least so far apart in the picture, and on those without trees by this factor more.
+// Minimum distance of a hill's corners in the picture, and a factor for hills without trees.
 constexpr float kCorner_px = 0.75F;
 constexpr float kLowCorner_px = 2.2F;
 constexpr float kBareHill = 3.0F;
 
-/// The bearings between which a circle around the world's middle is in view. Nothing where the picture ends below the
+/// The bearings between which a circle around the world's middle is in view. Nullopt if the picture ends below the
 /// horizon.
 std::optional<meshes::Arc> arc_in_view(const meshes::View& view, float radius_m) {
   float highest = -1.0F;
   for (const glm::vec3& ray : meshes::corner_rays(view)) highest = std::max(highest, ray.y / glm::length(ray));
   const float out_m = glm::length(glm::vec2(view.eye_m.x, view.eye_m.z));
   if (highest < -view.eye_m.y / std::max(radius_m - out_m, 1.0F)) return std::nullopt;
-  // From beside the middle it is seen in other directions.
+  // From a place beside the middle it is seen in other directions.
   const float aside_rad = out_m < radius_m ? std::asin(out_m / radius_m) : glm::pi<float>();
   return meshes::widened(meshes::bearings_of(view), aside_rad + 0.01F);
 }
@@ -87,7 +87,7 @@ void Landscape::prepare(const light::Light& light, const meshes::View& view, int
   if (small_sky_) small_sky_->make(view, clouds_, noise_, width_px, height_px);
 }
 
-/// Ranges from near to far: what they hide is not painted.
+/// Ranges from near to far, so that hidden parts are not painted.
 void Landscape::draw_far_country(const meshes::View& view) {
   glUseProgram(hills_.name());
   glActiveTexture(GL_TEXTURE0);
@@ -107,7 +107,7 @@ void Landscape::draw_far_country(const meshes::View& view) {
     glBindTexture(GL_TEXTURE_BUFFER, ranges_.at(range).texture.name());
     const auto first = static_cast<GLint>(arc->from_rad / step_rad) % around;
     const auto count = static_cast<GLsizei>(std::ceil(arc->size_rad / step_rad)) + 2;
-    // More than half of the way around is all of it.
+    // More than half of the circle: all of it.
     const bool is_all = count > around / 2;
     glDrawArrays(GL_TRIANGLE_STRIP, is_all ? 0 : 2 * first, 2 * (is_all ? around + 1 : count));
   }

@@ -15,8 +15,8 @@
 
 namespace yuragi::viewer::looks {
 
-/// The ground, the far country and the sky around the scenes. Drawn after them, so that what they cover is not painted.
-/// Needs a current context.
+/// The ground, the far country and the sky around the scenes. Drawn after the scenes, so that hidden parts are not
+/// painted. Needs a current context.
 class Landscape {
  public:
   Landscape();
@@ -24,10 +24,11 @@ class Landscape {
   /// With low quality the hills have fewer corners, and the sky is a SmallSky.
   void set_quality(look::Quality quality);
 
-  /// The picture that lies on the ground where nothing grows, and how much of it is to be seen, 0 to 1; null: none.
+  /// Sets the image on bare ground, and its visible share, 0 to 1; null: none.
   void set_ground_image(const std::shared_ptr<const look::Image>& image, float share);
 
-  /// Before a picture of this size in this light, whose `view` (ViewBuffer::set) is bound. Binds another framebuffer.
+  /// Call before a picture of this size in this light, with its `view` (ViewBuffer::set) bound. Binds another
+  /// framebuffer.
   void prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px);
 
   /// The View and the GroundMaps are bound. The ground has holes where the stencil has kHole.

@@ -11,7 +11,7 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-/// The nodes of the ground are not drawn: the stage gives their bends to the grass that grows there.
+/// The nodes of the ground are not drawn: the stage passes their bends to the grass.
 class GroundNodes : public SceneRenderer {
  public:
   void move_to(const pose::Pose&) override {}

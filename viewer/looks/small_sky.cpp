@@ -14,7 +14,7 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr int kPixel_px = 3;              // one of its pixels is as wide and high as so many of the picture
+constexpr int kPixel_px = 3;              // one of its pixels is as wide and high as this many of the picture
 constexpr GLsizei kSmallSkyColumns = 40;  // of sky.vert.glsl
 constexpr GLsizei kSmallSkyRows = 24;
 constexpr float kSun_rad = 0.03F;  // and its edge
@@ -27,7 +27,7 @@ struct Square {
   int side_px = 0;
 };
 
-/// The square around what is seen so large in a direction; nothing behind the eye.
+/// The square around an object of this size in a direction; nullopt if it is behind the eye.
 std::optional<Square> square_around(const meshes::View& view, const glm::vec3& direction, float radius_rad,
                                     const glm::vec2& picture_px) {
   const float ahead = glm::dot(direction, glm::vec3(view.forward));
@@ -40,7 +40,7 @@ std::optional<Square> square_around(const meshes::View& view, const glm::vec3& d
                 .side_px = static_cast<int>(2.0F * radius_px) + 2};
 }
 
-/// How far up in the picture the lowest sky can be, 0 to 1: a little below the horizon, for one who is high up.
+/// The lowest position of the sky in the picture, 0 to 1: a little below the horizon, for a high eye.
 float horizon_of(const meshes::View& view) {
   const float dip = 0.06F + std::max(view.eye_m.y, 0.0F) / 1000.0F;  // the ground ends before the horizon
   if (view.up.y < 0.1F) return 0.0F;
@@ -70,7 +70,7 @@ void SmallSky::make(const meshes::View& view, const CloudMap& clouds, const gl::
   picture_px_ = {width_px, height_px};
   const glm::ivec2 size_px = (picture_px_ + kPixel_px - 1) / kPixel_px;
   glActiveTexture(GL_TEXTURE0 + gl::kSmallSkyUnit);
-  glBindTexture(GL_TEXTURE_2D, 0);  // not to be read while it is drawn
+  glBindTexture(GL_TEXTURE_2D, 0);  // must not be read while it is drawn
   glActiveTexture(GL_TEXTURE0);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   if (size_px != size_px_) {

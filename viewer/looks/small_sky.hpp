@@ -9,18 +9,18 @@
 
 namespace yuragi::viewer::looks {
 
-/// The sky of a picture with a ninth of its pixels, which are then enlarged: where the processor draws, a sky in full
-/// would cost as much as all grass. Its clouds are no sharper anyway (CloudMap); sun, moon and stars are drawn in full.
-/// Needs a current context. Throws std::runtime_error where the driver cannot make it.
+/// The sky of a picture with a ninth of its pixels, which are then enlarged: if the processor draws, a full sky costs
+/// as much as all grass. Its clouds are no sharper anyway (CloudMap); sun, moon and stars are drawn in full. Needs a
+/// current context. Throws std::runtime_error if the driver cannot make it.
 class SmallSky {
  public:
   SmallSky();
 
-  /// Draws what of it can be above the ground in a picture of this size, whose View is bound. Binds another
+  /// Draws the part of it that can be above the ground in a picture of this size, whose View is bound. Binds another
   /// framebuffer. `noise`: the tile of viewer/gl/noise_texture.hpp.
   void make(const meshes::View& view, const CloudMap& clouds, const gl::Texture& noise, int width_px, int height_px);
 
-  /// Behind everything in the picture that it was made for. On unit 0 is the same noise.
+  /// Draws it behind everything in the picture that it was made for. Unit 0 must have the same noise.
   void draw(const light::Light& light, const meshes::View& view);
 
  private:

@@ -12,17 +12,16 @@ class Solids {
  public:
   explicit Solids(const meshes::SolidMesh& mesh);
 
-  /// Turns it about the vertical through a place (x, z), clockwise seen from above, from the position in which it was
-  /// made.
+  /// Turns it about the vertical axis through a place (x, z), clockwise seen from above, from its original position.
   void turn(const glm::vec2& axis_m, float sine, float cosine);
 
   /// The View is bound (ViewBuffer::set).
   void draw() const;
-  /// Without its rings, which are seen from near by alone.
+  /// Draws it without its rings, which are visible only from near by.
   void draw_coarsely() const;
 
  private:
-  GLsizei index_count_;  ///< with those of the rings, which are the last
+  GLsizei index_count_;  ///< including the rings, which are the last
   GLsizei ring_index_count_;
   gl::Program program_;
   GLint axis_place_, turn_place_;

@@ -29,19 +29,20 @@ int shadow_texels(look::Quality quality) {
   return 2048;
 }
 
-constexpr int kMirror = 2;        // a mirror's pixel is as large as so many of the picture, across and upright
+constexpr int kMirror = 2;        // a mirror's pixel is as large as this many of the picture, across and upright
 constexpr int kLowMirror = 3;     // with quality low
-constexpr float kMinSun = 0.02F;  // the sine of its height: below it shadows have no end
+constexpr float kMinSun = 0.02F;  // sine of its height: below it shadows are endless
 
-constexpr float kShadowPixels = 2.5F;  // with quality low a shadow is drawn as coarsely as if its texels were so large
-constexpr float kSmallest_px = 2.0F;   // half as wide, nothing is drawn of a thing
+constexpr float kShadowPixels = 2.5F;  // with quality low a shadow is drawn as if its texels had this size
+constexpr float kSmallest_px = 2.0F;   // an object with half of this width is not drawn
 
-/// How wide water is in the picture, half of it, where it begins to mirror more than the sky, and where it mirrors all.
+/// Half the width of water in the picture at which it begins to mirror more than the sky, and at which it mirrors
+/// everything.
 constexpr float kMirrorFrom_px = 12.0F;
 constexpr float kMirrorAll_px = 36.0F;
 constexpr float kSameHeight_m = 0.01F;
 
-/// The box with room for what the wind moves out of it.
+/// The box, with a margin for movement by the wind.
 meshes::Bounds with_room(const meshes::Bounds& box) {
   const glm::vec3 size_m = box.high_m - box.low_m;
   const glm::vec3 room_m = 0.15F * size_m + glm::vec3(0.5F * size_m.y, 0.0F, 0.5F * size_m.y) + 0.2F;
@@ -88,7 +89,7 @@ bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
 void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
   std::vector<std::unique_ptr<SceneView>> before = std::exchange(views_, {});
   scenes_.clear();
-  ground_.set_standing({});  // it refers to the skeletons
+  ground_.set_standing({});  // because it refers to the skeletons
   for (wire::SceneModel& scene : scenes) {
     const auto same = std::ranges::find_if(before, [&](const auto& view) {
       return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton &&
@@ -125,7 +126,7 @@ void Stage::show_next() {
   only_ = next == scenes_.end() ? std::nullopt : std::optional((*next)->name);
 }
 
-/// The box around the scenes for which `is_chosen`; nothing where there are none.
+/// The box around the scenes for which `is_chosen`; nullopt if there are none.
 template <class IsChosen>
 std::optional<meshes::Bounds> Stage::around(IsChosen&& is_chosen) const {
   std::optional<meshes::Bounds> all;
@@ -136,7 +137,7 @@ std::optional<meshes::Bounds> Stage::around(IsChosen&& is_chosen) const {
 }
 
 meshes::Bounds Stage::bounds() const {
-  // The ground is everywhere: where it is alone, a part of it.
+  // The ground is everywhere: if it is the only scene, a part of it is used.
   const auto is_thing = [this](std::size_t scene) { return is_chosen(scene) && !views_[scene]->renderer->is_ground(); };
   const bool is_ground_alone =
       !views_.empty() && std::ranges::all_of(views_, [](const auto& view) { return view->renderer->is_ground(); });
@@ -159,7 +160,7 @@ meshes::CameraPlace Stage::home(double aspect, double wind_from_deg) const {
   }
   if (count == 1 && views_[scene]->shore.is_pond()) return meshes::place_on_shore(views_[scene]->shore, wind_from_deg);
   if (count == 1 && views_[scene]->scene.kind == "fur") return meshes::place_beside(bounds(), wind_from_deg);
-  // A flag fills the picture, which its pole leaves below.
+  // A flag fills the picture; its pole extends below it.
   if (count == 1 && views_[scene]->scene.kind == "flag")
     return meshes::place_around(meshes::bounds_of(views_[scene]->scene.skeleton), aspect, wind_from_deg);
   std::optional<meshes::Bounds> blown;
@@ -206,7 +207,7 @@ bool Stage::is_there(const stream::PoseMoment& moment, std::size_t scene) const 
          moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
 }
 
-/// Finds out which scenes may be seen, and where.
+/// Determines which scenes are visible, and where.
 void Stage::look_around(const stream::PoseMoment& moment, const meshes::View& view) {
   const glm::vec3 to_sun(light_.to_sun);
   const std::array<glm::vec4, 5> planes = meshes::side_planes(view);
@@ -218,7 +219,7 @@ void Stage::look_around(const stream::PoseMoment& moment, const meshes::View& vi
     const meshes::Bounds box = with_room(views_[scene]->bounds);
     seen_[scene].in_picture = is_field || is_large_in_view(view, planes, box);
     if (!renderer.casts_shadow() || to_sun.y <= kMinSun) continue;
-    // It falls on whatever stands between the thing and the ground, too.
+    // The shadow also falls on objects between the thing and the ground.
     const meshes::Bounds shadow = shadow_of(box, to_sun);
     seen_[scene].in_shadow = is_field || is_large_in_view(view, planes, united(box, shadow));
   }
@@ -233,7 +234,7 @@ void Stage::look_around(const stream::PoseMoment& moment, const meshes::View& vi
   }
 }
 
-/// There is one mirror: for the water that is widest in the picture, and all that is as high.
+/// There is one mirror: for the water that is widest in the picture, and all water of the same height.
 void Stage::choose_mirror(const meshes::View& view) {
   image_.reset();
   float widest_px = kMirrorFrom_px;
@@ -256,7 +257,7 @@ void Stage::choose_mirror(const meshes::View& view) {
   image_ = meshes::mirrored(view, *height_m, 1.0F / static_cast<float>(smaller));
 }
 
-/// Gives each renderer its pose, and asks which light it throws.
+/// Passes each renderer its pose, and gets the light that it throws.
 void Stage::move_to(const stream::PoseMoment& moment) {
   const SceneRenderer::Moment now{.time_s = moment.time_s,
                                   .wind_m_s = wind_m_s_of(moment),
@@ -277,7 +278,7 @@ void Stage::move_to(const stream::PoseMoment& moment) {
   }
 }
 
-/// What stands on the ground, and how its grass is bent.
+/// Updates the things on the ground, and the bends of its grass.
 void Stage::move_ground(const stream::PoseMoment& moment) {
   standing_.clear();
   tall_ = 0.0F;
@@ -295,7 +296,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     const bool fits = scene < moment.poses.size() && scene < moment.opacities.size() &&
                       pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
     if (view.renderer->is_ground()) {
-      // It moves the grass around whatever scene is chosen.
+      // It moves the grass around every scene, even if only another one is shown.
       if (!fits || moment.opacities[scene] <= 0.0F) continue;
       nodes = std::get_if<pose::StrandPose>(&moment.poses[scene]);
       grid = view.grid;
@@ -335,7 +336,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     tall_ = ground_opacity;
     stand_ = {};
   }
-  // While one picture follows another, the bare ground is seen between them.
+  // During the change from one image to another the bare ground is visible.
   landscape_.set_ground_image(image, std::clamp(2.0F * image_opacity - 1.0F, 0.0F, 1.0F));
   ground_.set_standing(standing_, light_.colors.z);
   ground_.set_moment(moment.time_s, wind_m_s_of(moment));
@@ -371,14 +372,14 @@ void Stage::set_quality(look::Quality quality) {
   shadow_map_.reset();
 }
 
-/// Draws what the sun sees of everything that casts a shadow, for `view` to look it up.
+/// Draws the sun's view of everything that casts a shadow, and sets `view` to use it.
 void Stage::draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view) {
   const auto casts = [&](std::size_t scene) {
     return is_there(moment, scene) && views_[scene]->renderer->casts_shadow();
   };
   std::optional<meshes::Bounds> casters = around(casts);
   if (!casters) return;
-  // What stands on a floor is blown out over it.
+  // Objects on a floor are blown out over it.
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!casts(scene)) continue;
     if (const auto floor = views_[scene]->renderer->floor()) casters = united(*casters, meshes::bounds_of(*floor));
@@ -404,7 +405,7 @@ void Stage::draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& t
   meshes::add_shadows(view, shadows, shadow_map_->texels());
 }
 
-/// Draws what the water in view mirrors, with less work than the picture is.
+/// Draws the mirror image for the water in view, with less detail than the picture.
 void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& view, const gl::RenderTarget& target) {
   if (!image_) return;
   const int smaller = quality_ == look::Quality::kLow ? kLowMirror : kMirror;
@@ -417,7 +418,7 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
   view_buffer_.set(*image_);
   mirror_->begin();
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    // With low quality what grows at the water alone, and sky, hills and fires.
+    // With low quality only the plants at the water, sky, hills and fires.
     if (!seen_[scene].in_mirror) continue;
     if (quality_ == look::Quality::kLow && !views_[scene]->renderer->mirror_m()) continue;
     door_.open(moment.opacities[scene], scene);
@@ -501,7 +502,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   landscape_.draw_sky(view);
   mark_pass("hills and sky");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    // A fire shines beyond its own box.
+    // A fire lights places beyond its own box.
     const bool is_fire = is_there(moment, scene) && views_[scene]->renderer->throws_light();
     if (!seen_[scene].in_picture && !is_fire) continue;
     door_.open(moment.opacities[scene], scene);

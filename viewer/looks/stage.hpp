@@ -26,12 +26,12 @@ namespace yuragi::viewer::looks {
 /// All scene views, each with its SceneRenderer, in a landscape. Needs a current context; on its thread.
 class Stage {
  public:
-  /// Replaces the scenes. One of the same kind, skeleton and cloth as before keeps what it has on the GPU. Where the
-  /// scene that alone was drawn is gone, all are drawn.
+  /// Replaces the scenes. A scene of the same kind, skeleton and cloth as before keeps its GPU data. If the only scene
+  /// that was drawn is removed, all are drawn.
   void set_scenes(std::vector<wire::SceneModel> scenes);
   const std::vector<const wire::SceneModel*>& scenes() const { return scenes_; }
 
-  /// Draws only the scene of this name; all where there is no name.
+  /// Draws only the scene of this name; all if there is no name.
   void show_only(std::optional<std::string> name) { only_ = std::move(name); }
   /// Draws only the first scene, then only the next, and after the last all again.
   void show_next();
@@ -40,11 +40,11 @@ class Stage {
   /// The box around all scenes that are drawn, and the camera's first place for a picture of width / height `aspect`.
   meshes::Bounds bounds() const;
   meshes::CameraPlace home(double aspect, double wind_from_deg = meshes::kUsualWindFrom_deg) const;
-  /// The boxes around the scenes that are drawn and that an eye must not be in: all but grass, ground and water.
+  /// The boxes around the drawn scenes that an eye must not enter: all except grass, ground and water.
   std::vector<meshes::Bounds> obstacles() const;
-  /// A camera's place, or one farther back, that is not within a body. What is drawn is seen from there.
+  /// Returns a camera's place, moved back along its view if it is within a body.
   meshes::CameraPlace outside(const meshes::CameraPlace& place) const;
-  /// The box around the scene of this name; nothing where there is none.
+  /// The box around the scene of this name; nullopt if there is none.
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const;
   /// How many joints move in all scenes.
   std::size_t node_count() const;
@@ -55,17 +55,17 @@ class Stage {
   /// How much work the next pictures are; at first little. kLow has hard shadows, on the ground only; kAuto is kHigh.
   void set_quality(look::Quality quality);
 
-  /// From now on only this share (0 to 1] of the blades of grass that the quality has is drawn; all at first.
+  /// From now on draws only this share (0 to 1] of the quality's blades of grass; initially all.
   void set_blade_share(float share) { blade_share_ = share; }
 
-  /// From now on the meshes of things are those of a picture whose pixels are so many times as large (1 or more).
+  /// From now on meshes are those of a picture whose pixels are this many times as large (1 or more).
   void set_coarseness(float coarseness) { coarseness_ = coarseness; }
 
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
   /// From now on the passes of each picture are timed: kinematics, each kind of scene, their shadows, the sward, the
-  /// landscape, lights. Null: no longer. Must outlive the drawing.
+  /// landscape, lights. Null: stops the timing. Must outlive the drawing.
   void time_passes_with(gl::PassClock* clock) { clock_ = clock; }
 
  private:
@@ -78,10 +78,10 @@ class Stage {
     meshes::Shore shore;                 // of water
   };
 
-  /// Where of a picture a scene may be seen.
+  /// Where in a picture a scene can be visible.
   struct Seen {
     bool in_picture = false;
-    bool in_shadow = false;  // it casts one that may be seen
+    bool in_shadow = false;  // it casts a shadow that can be visible
     bool in_mirror = false;
 
     bool is_anywhere() const { return in_picture || in_shadow || in_mirror; }
@@ -102,17 +102,17 @@ class Stage {
   void move_ground(const stream::PoseMoment& moment);
   void draw_sward(const meshes::View& view);
 
-  std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
+  std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which must not move in memory
   std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
   std::vector<Seen> seen_;             // of the present picture
-  std::optional<meshes::View> image_;  // what the water in view mirrors
+  std::optional<meshes::View> image_;  // the mirror image of the water in view
   light::Light light_ = light::light_of({}, 0.0);
   std::vector<light::Fire> fires_;
   Landscape landscape_;
   GroundMaps ground_;
   std::vector<meshes::Standing> standing_;
-  meshes::Stand stand_;  // of the tall grass, of which this share is to be seen
+  meshes::Stand stand_;  // of the tall grass, of which this share is visible
   float tall_ = 0.0F;
   std::size_t tall_door_ = 0;
   std::optional<Sward> meadow_, lawn_;  // made when first needed
@@ -122,8 +122,8 @@ class Stage {
   float blade_share_ = 1.0F;
   float coarseness_ = 1.0F;
   look::Quality quality_ = look::Quality::kLow;
-  std::optional<gl::ShadowMap> shadow_map_;  // made when the sun first shines
-  std::optional<gl::Mirror> mirror_;         // made when water is first seen
+  std::optional<gl::ShadowMap> shadow_map_;  // created when the sun first shines
+  std::optional<gl::Mirror> mirror_;         // created when water first becomes visible
   gl::PassClock* clock_ = nullptr;
 };
 

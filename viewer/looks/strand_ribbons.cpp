@@ -10,7 +10,7 @@ StrandRibbons::StrandRibbons(const pose::StrandSkeleton& strands, GLint copies)
 }
 
 void StrandRibbons::move_to(const pose::StrandPose& pose) {
-  // The forward kinematics of engine/pose; its joints are uploaded as they lie.
+  // The forward kinematics of engine/pose; its joints are uploaded in the same order.
   const pose::StrandKinematicsJob job{.skeleton = strands_, .pose = &pose, .row = {}, .joints = &joints_};
   if (job.run() != pose::StrandKinematicsJob::Problem::kNone) return;
   gl::stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(joints_).data()));
@@ -25,7 +25,7 @@ void StrandRibbons::draw(const gl::Program& program, const meshes::View& view) {
   glBindTexture(GL_TEXTURE_BUFFER, joint_texture_.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, joint_buffer_.name());
 
-  // Near blades first: the depth test then saves painting what they hide.
+  // Near blades first: then the depth test avoids painting hidden parts.
   sorter_.sort(view);
   for (const meshes::DetailLevel& level : sorter_.levels()) {
     if (level.blades.empty()) continue;

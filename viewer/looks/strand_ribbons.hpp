@@ -16,7 +16,7 @@ namespace yuragi::viewer::looks {
 /// copies of Blade i / copies.
 class StrandRibbons {
  public:
-  /// `strands` must outlive this. Each is drawn as so many ribbons.
+  /// `strands` must outlive this. Each is drawn as `copies` ribbons.
   StrandRibbons(const pose::StrandSkeleton& strands, GLint copies);
 
   /// Computes and uploads the joints of this pose.
@@ -25,7 +25,7 @@ class StrandRibbons {
   const pose::JointPositions& joints() const { return joints_; }
   /// meshes::Partings', of that pose.
   void set_openings(std::span<const float> openings) { sorter_.set_openings(openings); }
-  /// Draws what is in view, near ones first, with `program`.
+  /// Draws the visible ones, near ones first, with `program`.
   void draw(const gl::Program& program, const meshes::View& view);
 
  private:

@@ -13,12 +13,12 @@ constexpr float kLawnReach_m = 18.0F;
 constexpr float kLawnLength_m = 0.085F;  // sward.part.glsl has the same
 constexpr float kLawnHeight_m = 0.2F;
 constexpr float kLawnBlades_per_m2 = 2200.0F;
-constexpr float kLawnDrawn = 1.8F;         // as many blades are drawn as of tall grass: they have fewer vertices
+constexpr float kLawnDrawn = 1.8F;         // number of blades relative to tall grass: they have fewer vertices
 constexpr float kHighest = 2.2F;           // of the mean length
-constexpr float kWidthPerSpacing = 0.26F;  // as of streamed blades (blades.cpp)
+constexpr float kWidthPerSpacing = 0.26F;  // as for streamed blades (blades.cpp)
 constexpr float kLawnWidth_m = 0.004F;
 
-/// A lawn's blades are short: they end nearer, and stand closer.
+/// A lawn's blades are short: they are drawn to a shorter distance, and stand closer.
 meshes::GrassDetail detail_of(Sward::Kind kind, meshes::GrassDetail detail) {
   if (kind == Sward::Kind::kLawn) {
     detail.reach_m = std::min(detail.reach_m, kLawnReach_m);

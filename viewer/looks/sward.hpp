@@ -10,7 +10,7 @@
 
 namespace yuragi::viewer::looks {
 
-/// How much a quality draws of grass, streamed and other alike.
+/// The amount of grass of a quality, streamed and other.
 const meshes::GrassDetail& grass_detail(look::Quality quality);
 
 /// Blades of grass around the eye as far as they can be distinguished, drawn from static buffers: tall grass around a

@@ -12,7 +12,7 @@ namespace {
 constexpr int kPicture_px = 256;
 constexpr int kWidth_px = kPicture_px * static_cast<int>(meshes::trees::kImpostorSides);
 constexpr int kHeight_px = kPicture_px * static_cast<int>(meshes::trees::kImpostorRows);
-constexpr int kMinLevel = 5;  // a picture is 8 pixels wide there
+constexpr int kMinLevel = 5;  // a picture is 8 pixels wide at that level
 
 const void* offset_in_tree(std::size_t offset) {
   return reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr)

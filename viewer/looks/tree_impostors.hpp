@@ -19,10 +19,10 @@ struct LeafColors {
 };
 
 /// The pictures of a tree from all sides, and the sheets far away that show them: one draw call for a whole grove. The
-/// pictures hold colors and normals, so that the sheets are in the light of each moment. Needs a current context.
+/// pictures hold colors and normals, so that the sheets follow the light. Needs a current context.
 class TreeImpostors {
  public:
-  /// `box` and `foot_m`: of the tree where it stands.
+  /// `box` and `foot_m`: of the tree at its place.
   TreeImpostors(const meshes::trees::ImpostorBox& box, const glm::vec3& foot_m, meshes::trees::SprayShape::Kind kind,
                 const LeafColors& colors);
 
@@ -37,7 +37,7 @@ class TreeImpostors {
   }
 
   /// Draws sheets, which face the eye or, for their shadows, the sun.
-  /// `blown`: how far the wind has turned their sprays from rest (SprayPlace), on average.
+  /// `blown`: the mean turn of their sprays from rest by the wind (SprayPlace).
   void draw(std::span<const meshes::trees::Impostor> trees, float blown, bool is_by_sun);
 
  private:
@@ -50,7 +50,7 @@ class TreeImpostors {
   meshes::trees::SprayShape::Kind kind_;
   LeafColors colors_;
   gl::Texture looks_, facing_;
-  /// What the pictures are drawn into, besides these two.
+  /// The buffers in which the pictures are drawn, besides these two.
   struct Canvas {
     gl::Renderbuffer depth;
     gl::Framebuffer framebuffer;

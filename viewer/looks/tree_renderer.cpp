@@ -22,25 +22,25 @@ meshes::trees::SprayDetail detail_of(look::Quality quality) {
   return {.leaf_px = 3.5F, .largest = 3.0F, .shaped_leaf_px = 30.0F, .speck_px = 4.0F, .hidden_share = 0.5F};
 }
 
-/// A ring of a branch for so many pixels of its length.
+/// Length of a branch's ring in pixels.
 float ring_px_of(look::Quality quality) {
   return quality == look::Quality::kLow ? 10.0F : 6.0F;
 }
 
-/// Trees that are no higher in the picture, in pixels, are impostors, and no higher than this against their distance:
-/// nobody looks at one so far away.
+/// Trees up to this height in the picture, in pixels, and relative to their distance, are impostors: nobody looks at
+/// one that far away.
 float impostor_px_of(look::Quality quality) {
   return quality == look::Quality::kLow ? 240.0F : 160.0F;
 }
 constexpr float kImpostorHeight = 0.3F;
 
-/// Of the pictures for impostors.
+/// For the pictures of impostors.
 constexpr meshes::trees::SprayDetail kPictureDetail{
     .leaf_px = 3.0F, .largest = 3.0F, .shaped_leaf_px = 1e6F, .speck_px = 4.0F, .hidden_share = 0.4F};
 constexpr float kPictureRing_px = 12.0F;
-constexpr float kPictureTwig_px = 0.04F;  // that thin, they cover what they do near by
+constexpr float kPictureTwig_px = 0.04F;  // so thin that they cover the same area as near by
 
-/// Shadows are soft, and hide what a leaf is like.
+/// Shadows are soft, and hide the shape of a leaf.
 meshes::trees::SprayDetail shadow_detail_of(const meshes::trees::SprayDetail& detail) {
   return {.leaf_px = 2.0F * detail.leaf_px, .largest = 1.3F * detail.largest, .shaped_leaf_px = 1e6F, .speck_px = 1e6F};
 }
@@ -108,14 +108,14 @@ meshes::Bounds crown_bounds(const pose::TreeSkeleton& tree) {
   return meshes::bounds_of(tree);
 }
 
-/// Of the streamed tree alone.
+/// Bounds of the streamed tree alone.
 meshes::Bounds bounds_without_grove(const pose::TreeSkeleton& tree) {
   pose::TreeSkeleton alone;
   alone.levels = tree.levels;
   return meshes::bounds_of(alone);
 }
 
-/// Where the trees of a skeleton stand: the streamed one, and its copies.
+/// The places of a skeleton's trees: the streamed one, and its copies.
 std::vector<meshes::trees::Place> places_of(const pose::TreeSkeleton& tree) {
   meshes::trees::Place own;
   if (!tree.levels.empty() && tree.levels[0].strands.strand_count > 0) {
@@ -133,7 +133,7 @@ std::vector<meshes::trees::Place> places_of(const pose::TreeSkeleton& tree) {
   return places;
 }
 
-/// Blossom and bare trees are what they are in every season.
+/// Blossom and bare trees do not change with the season.
 bool loses_leaves(const pose::TreeSkeleton& tree) {
   return tree.foliage == pose::FoliageColor::kGreen || tree.foliage == pose::FoliageColor::kAutumn;
 }
@@ -141,7 +141,8 @@ bool loses_leaves(const pose::TreeSkeleton& tree) {
 /// Below this share of leaves one sees the twigs.
 constexpr float kTwigsSeenBelow = 0.5F;
 
-/// How many of a tree's leaves hang where so many do on the whole: some trees lose them earlier. None at 0, all at 1.
+/// The share of a tree's leaves that hang when the mean of all trees is `leaves`: some trees lose them earlier. None at
+/// 0, all at 1.
 float hanging_of(float tree_chance, float leaves) {
   return std::pow(leaves, glm::mix(0.6F, 1.7F, tree_chance));
 }
@@ -235,8 +236,8 @@ void TreeRenderer::add_foliage(std::size_t level, pose::FoliageColor color) {
              meshes::trees::near_spray(foliage.shape));
 }
 
-/// How much is seen of a foliage, where so many of the leaves hang: leaves, while there are any, twigs when they have
-/// got few. Blossom, and a tree that was bare before, stay.
+/// The visible share of a foliage when this share of the leaves hangs: leaves, while there are any, twigs when few are
+/// left. Blossom, and a tree that was bare before, do not change.
 float TreeRenderer::shown_share(const Foliage& foliage, float hanging) const {
   if (!loses_leaves(*tree_)) return 1.0F;
   return foliage.color == tree_->foliage ? hanging : 1.0F - glm::smoothstep(0.0F, kTwigsSeenBelow, hanging);
@@ -304,7 +305,7 @@ void TreeRenderer::move_to(const pose::Pose& pose) {
 }
 
 void TreeRenderer::turn_back(Alike& alike, const pose::TreePose& bends) {
-  // The tree is turned after it is bent: so that it bends to where the wind goes, bends are turned back before.
+  // The tree is turned after it is bent: the bends are first turned back, so that it bends in the wind's direction.
   for (std::size_t level = 0; level < bends.levels.size(); ++level) {
     const pose::StrandPose& from = bends.levels[level];
     pose::StrandPose& to = alike.bends.levels[level];
@@ -329,12 +330,12 @@ glm::vec3 TreeRenderer::middle_m(const Alike& alike) const {
   return sum_m / static_cast<float>(std::max<std::size_t>(strands.strand_count, 1));
 }
 
-/// Gives its joints the bends, and what is seen of its foliage where so many of the leaves hang.
+/// Applies the bends to its joints, and the visible share to its foliage.
 void TreeRenderer::move(Alike& alike, float hanging_leaves) {
   alike.is_moved = true;
   const pose::TreeKinematicsJob job{.skeleton = tree_, .pose = &alike.bends, .row = {}, .joints = &alike.joints};
   if (job.run() != pose::TreeKinematicsJob::Problem::kNone) return;
-  // None of them has fewer.
+  // No tree has fewer.
   const float fewest = hanging_of(1.0F, hanging_leaves);
   for (std::size_t i = 0; i < foliages_.size(); ++i) {
     if (shown_share(*foliages_[i], fewest) > 0.0F) alike.crowns[i].move_to(alike.joints);
@@ -371,7 +372,7 @@ void TreeRenderer::prepare(const meshes::View& view, gl::ViewBuffer& views) {
   if (has_bare && !bare_impostors_) bare_impostors_ = pictures_of(views, 0.0F);
 }
 
-/// The pictures of the tree at rest with these of its leaves.
+/// The pictures of the tree at rest with this foliage.
 std::unique_ptr<TreeImpostors> TreeRenderer::pictures_of(gl::ViewBuffer& views, float hanging) {
   const gl::Program bark = gl::link_program("bark's picture", gl::shaders::kBarkVert, gl::shaders::kImpostorLookFrag);
   const gl::Program leaf = gl::link_program("leaf's picture", gl::shaders::kLeafVert, gl::shaders::kImpostorLookFrag);
@@ -401,7 +402,7 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::Spray
                             bool is_shadow) {
   const auto planes = side_planes(view);
   const float radius_m = std::hypot(box_.half_width_m, box_.half_height_m);
-  // Gusts come to the one that stands the farthest upwind first.
+  // Gusts reach the tree that is farthest upwind first.
   const auto downwind_m = [&](const meshes::trees::Place& place) {
     return sway_.downwind_m({place.to_m.x - place.from_m.x, place.to_m.z - place.from_m.z});
   };
@@ -433,7 +434,7 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::Spray
   const float blown = foliages_.empty() ? 0.0F : trees_.front()->crowns.front().blown();
   if (moment_.hanging_leaves > 0.0F || !bare_impostors_) impostors_->draw(far_trees_, blown, is_shadow);
   if (!bare_impostors_) return;
-  // Behind what is left of the leaves; nothing of those that have enough.
+  // Drawn behind the remaining leaves; not for trees with enough leaves.
   const auto& twigs = *foliages_.back();
   std::erase_if(far_trees_,
                 [&](const meshes::trees::Impostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });

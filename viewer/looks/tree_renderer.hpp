@@ -15,8 +15,8 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws a tree and its grove: tapering branches with bark, and sprays of leaves, flowers or bare twigs. Each is as
-/// fine as the picture and the quality need.
+/// Draws a tree and its grove: tapering branches with bark, and sprays of leaves, flowers or bare twigs. Their detail
+/// depends on the picture and the quality.
 class TreeRenderer : public SceneRenderer {
  public:
   /// `tree` must outlive this.
@@ -33,12 +33,12 @@ class TreeRenderer : public SceneRenderer {
   bool casts_shadow() const override { return true; }
 
  private:
-  /// The programs that draw a tree: as it is seen, or as its impostors' pictures show it.
+  /// The programs that draw a tree: directly, or for its impostors' pictures.
   struct Programs {
     const gl::Program& bark;
     const gl::Program& leaf;
     LeafColors colors;
-    float thinnest_px = 0.11F;  // half as wide are twigs at least
+    float thinnest_px = 0.11F;  // minimum half width of twigs
   };
 
   /// A level of wood.
@@ -67,13 +67,13 @@ class TreeRenderer : public SceneRenderer {
     std::array<SprayOnGpu, 3> sprays = {};  // by SprayKind
   };
 
-  /// The trees that are turned alike: those have the same joints, since the wind bends all toward the same side.
+  /// Trees that are turned by the same angle: they have the same joints, because the wind bends all to the same side.
   struct Alike {
     float cosine = 1.0F;
     float sine = 0.0F;
     std::vector<meshes::trees::Place> places;
     pose::TreePose bends;   // turned back
-    bool is_moved = false;  // what is below has them
+    bool is_moved = false;  // the members below are up to date
     pose::TreeJoints joints;
     std::vector<meshes::trees::Branches> branches;  // of woods_
     std::vector<meshes::trees::Crown> crowns;       // of foliages_
@@ -99,7 +99,7 @@ class TreeRenderer : public SceneRenderer {
   std::unique_ptr<TreeImpostors> pictures_of(gl::ViewBuffer& views, float hanging);
 
   const pose::TreeSkeleton* tree_;
-  meshes::Bounds crown_bounds_;  // of the leaves, or of all where there are none
+  meshes::Bounds crown_bounds_;  // of the leaves, or of all if there are none
   std::vector<std::unique_ptr<Wood>> woods_;
   std::vector<std::unique_ptr<Foliage>> foliages_;
   meshes::trees::SprayDetail detail_;

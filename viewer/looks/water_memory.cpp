@@ -10,11 +10,11 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-/// Waves of 0.4 to 1.2 m travel as groups with 0.4 to 0.7 m/s, and the wind drags the surface with 3 % of its speed.
+/// Waves of 0.4 to 1.2 m travel as groups at 0.4 to 0.7 m/s, and the wind drags the surface at 3 % of its speed.
 constexpr float kCarriedPart = 0.06F;
 constexpr float kMaxCarried_m_s = 1.0F;
 
-/// The part of the way to a steady state that is gone after `passed_s`.
+/// The part of the way to a steady state that is covered after `passed_s`.
 float part_gone(double passed_s, float time_constant_s) {
   return static_cast<float>(-std::expm1(-passed_s / static_cast<double>(time_constant_s)));
 }
@@ -70,8 +70,8 @@ void WaterMemory::settle(const Forces& forces) {
   is_settled_ = true;
 }
 
-/// Semi-Lagrangian (J. Stam 1999, "Stable fluids"): each cell takes what was upwind of it. At the upwind shore the
-/// water is as at its edge.
+/// Semi-Lagrangian (J. Stam 1999, "Stable fluids"): each cell takes the value upwind of it. At the upwind shore the
+/// edge value continues.
 void WaterMemory::carry(const glm::vec2& by_cells) {
   const glm::vec2 last(static_cast<float>(columns_ - 1), static_cast<float>(rows_ - 1));
   for (std::size_t row = 0; row < rows_; ++row) {

@@ -9,17 +9,17 @@
 
 namespace yuragi::viewer::looks {
 
-/// What a pond's surface remembers of the wind: how far gusts have woken each cell of a grid, and where foam floats.
-/// Waves rise more slowly than a gust, outlive it, and travel downwind while they last. Pure: the same steps give the
-/// same state. The first step, and one back in time, takes the steady state of what it is given.
+/// The memory of a pond's surface: how far gusts have roughened each cell of a grid, and where foam floats. Waves rise
+/// more slowly than a gust, outlive it, and travel downwind while they last. Pure: the same steps give the same state.
+/// The first step, and one back in time, takes the steady state of its input.
 class WaterMemory {
  public:
-  static constexpr float kRise_s = 1.3F;   ///< time constant with which a gust wakes water
+  static constexpr float kRise_s = 1.3F;   ///< time constant with which a gust roughens water
   static constexpr float kDecay_s = 3.0F;  ///< with which the water calms, and foam dissolves
   /// Foam appears within a breaking crest.
   static constexpr float kBreaking_s = 0.25F;
 
-  /// What acts on the water at a moment: a number for each cell, row after row.
+  /// The forces on the water at a moment: a number for each cell, row after row.
   struct Forces {
     glm::vec2 wind_m_s{0.0F};         ///< toward east and south
     std::span<const float> gusts;     ///< how far the wind wakes the water: -1 to 1, 0 in the mean wind
@@ -47,7 +47,7 @@ class WaterMemory {
   void carry(const glm::vec2& by_cells);
 
   std::size_t columns_ = 0, rows_ = 0;
-  glm::mat2 to_cells_{1.0F};  ///< from metres to columns and rows
+  glm::mat2 to_cells_{1.0F};  ///< converts metres to columns and rows
   bool is_settled_ = false;
   double time_s_ = 0.0;
   std::vector<float> cells_, carried_;

@@ -22,17 +22,17 @@ constexpr GLsizei kLowBedTexels = 512;  // a side
 constexpr GLsizei kBedTexels = 1024;
 
 // Behind the units of the shadows and of the mirror.
-constexpr float kCell_px = 20.0F;  // of the water's mesh, at most
-/// Where the processor draws, triangles of a few pixels cost more than what is seen in them.
+constexpr float kCell_px = 20.0F;  // maximum cell size of the water's mesh
+/// If the processor draws, triangles of a few pixels cost more than their detail is worth.
 constexpr float kLowCell_px = 120.0F;
-constexpr float kKeep = 1.15F;  // so far beyond its bounds a level of detail is kept
+constexpr float kKeep = 1.15F;  // a level of detail is kept this far beyond its bounds
 constexpr GLint kReedRings = 6;
 constexpr GLint kMirroredReedRings = 3;
-constexpr float kUnderBank_m = 0.15F;        // so far the sheet goes on where the bank hides it
+constexpr float kUnderBank_m = 0.15F;        // the sheet extends this far under the bank, which hides it
 constexpr std::size_t kMaxMemoryCells = 48;  // along a side
 
-/// Slopes between which a wave begins to break and all of it does, chosen by eye within what a steep wave has (the
-/// limit of a regular wave is 0.58, tan 30 degrees: G. Stokes 1880).
+/// Slopes between which a wave begins to break and breaks completely, chosen by eye within the slopes of steep waves
+/// (the limit of a regular wave is 0.58, tan 30 degrees: G. Stokes 1880).
 constexpr float kBreakingFrom = 0.38F;
 constexpr float kBreakingAll = 0.56F;
 
@@ -112,7 +112,7 @@ void WaterRenderer::make_sheet() {
   gl::set_sampler(water_, "slopes", gl::kSlopesUnit);
   gl::set_sampler(water_, "ripples", gl::kRipplesUnit);
   gl::set_sampler(water_, "mirror", gl::kMirrorUnit);
-  // A point of the grid is in the middle of its texel.
+  // A point of the grid is at the centre of its texel.
   const glm::vec2 cells(static_cast<float>(surface_->columns - 1), static_cast<float>(surface_->rows - 1));
   const glm::vec2 texel_m = 2.0F * shore_.half_m() / cells;
   cell_m_ = std::max(texel_m.x, texel_m.y);
@@ -142,7 +142,7 @@ void WaterRenderer::make_sheet() {
 void WaterRenderer::make_memory() {
   const std::size_t columns = std::min(surface_->columns, kMaxMemoryCells);
   const std::size_t rows = std::min(surface_->rows, kMaxMemoryCells);
-  // Its cells share out the texels of the slopes.
+  // Each cell gets an equal part of the texels of the slopes.
   const glm::vec2 points(static_cast<float>(surface_->columns), static_cast<float>(surface_->rows));
   const glm::vec2 side_m = 2.0F * shore_.half_m() * points / (points - 1.0F);
   const glm::vec2 along_m = shore_.along() * (side_m.x / static_cast<float>(columns));
@@ -220,7 +220,7 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   glActiveTexture(GL_TEXTURE0);
 }
 
-/// Draws the map of the bed, which does not change.
+/// Draws the map of the bed, which is constant.
 void WaterRenderer::draw_bed() {
   constexpr std::array<float, 4> kEarth{0.32F, 0.28F, 0.22F, 1.0F};  // under the bank
   glBindTexture(GL_TEXTURE_2D, bed_texture_.name());
@@ -248,7 +248,7 @@ void WaterRenderer::draw_bed() {
   has_bed_ = true;
 }
 
-/// The share of each of the memory's cells where waves break.
+/// Computes the share of each of the memory's cells where waves break.
 void WaterRenderer::sum_up_breaking() {
   std::ranges::fill(breaking_, 0.0F);
   constexpr float kFrom = kBreakingFrom * kBreakingFrom;
@@ -262,11 +262,11 @@ void WaterRenderer::sum_up_breaking() {
 }
 
 void WaterRenderer::feel_ground(const GroundMaps& ground) {
-  // A gust bends grass this much farther than the mean wind, radians, where it wakes the water wholly.
+  // A gust that bends grass this much farther than the mean wind, radians, roughens the water completely.
   constexpr float kGustAtRest_rad = 0.03F;
   constexpr float kGustPart = 0.15F;
   constexpr float kMaxCalmed = 0.8F;
-  // Foam comes to the lee shore from Beaufort 5 on: what floats is driven by waves that break.
+  // Foam reaches the lee shore from Beaufort 5 on: floating foam is driven by breaking waves.
   constexpr float kFoamFrom_m_s = 6.0F;
   constexpr float kFoamFull_m_s = 13.0F;
   if (!shore_.is_pond()) return;
@@ -310,12 +310,12 @@ void WaterRenderer::draw_reeds(GLint rings) {
 }
 
 const WaterRenderer::Sheet& WaterRenderer::sheet_in(const meshes::View& view) {
-  // From the eye to the nearest place of the water.
+  // From the eye to the nearest point of the water.
   const glm::vec2 off_m = glm::vec2(view.eye_m.x, view.eye_m.z) - shore_.middle_m();
   const glm::vec2 beside_m(std::abs(glm::dot(off_m, shore_.along())), std::abs(glm::dot(off_m, shore_.across())));
   const glm::vec2 out_m = glm::max(beside_m - shore_.half_m(), 0.0F);
   const float nearest_m = glm::length(glm::vec3(out_m, view.eye_m.y - *mirror_m()));
-  // It is flat but for its waves, whose light is of each pixel: a cell may be wide.
+  // It is flat except for its waves, which are shaded per pixel: a cell can be wide.
   const float widest = cell_px_ * view.eye_m.w * nearest_m / cell_m_;  // step
   const float now = static_cast<float>(kSteps.at(level_));
   if (now > widest * kKeep || 2.0F * now < widest / kKeep) {

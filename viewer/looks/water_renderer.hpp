@@ -11,7 +11,7 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws a surface as a pond with a natural shore, in which sky and things are mirrored.
+/// Draws a surface as a pond with a natural shore, which mirrors sky and things.
 class WaterRenderer : public SceneRenderer {
  public:
   /// `surface` must outlive this. With quality low nothing casts a shadow on it.
@@ -34,7 +34,7 @@ class WaterRenderer : public SceneRenderer {
     gl::VertexArray array = {};
     GLsizei index_count = 0;
   };
-  static constexpr std::array<std::size_t, 4> kSteps = {1, 2, 4, 8};  // of the points along each side
+  static constexpr std::array<std::size_t, 4> kSteps = {1, 2, 4, 8};  // steps of points along each side
 
   void make_sheet();
   void make_memory();
@@ -56,7 +56,7 @@ class WaterRenderer : public SceneRenderer {
   gl::Texture slopes_, ripples_, reed_texture_;
   gl::VertexArray hole_array_, bank_array_;
   std::array<Sheet, kSteps.size()> sheets_;
-  std::size_t level_ = 0;  // of sheets_, in the last picture
+  std::size_t level_ = 0;  // index into sheets_, of the last picture
   float cell_m_ = 0.0F;
   gl::Buffer rest_buffer_, height_buffer_;
   gl::Buffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
@@ -65,7 +65,7 @@ class WaterRenderer : public SceneRenderer {
   Moment moment_;
   WaterMemory memory_;
   std::vector<glm::vec2> memory_m_;      // the middles of its cells
-  std::vector<std::size_t> cell_of_;     // of memory_, for each point of the surface
+  std::vector<std::size_t> cell_of_;     // index into memory_ for each point of the surface
   std::vector<float> gusts_, breaking_;  // of its cells
   std::vector<float> points_per_cell_;
   gl::Texture memory_texture_, bed_texture_;

@@ -16,7 +16,7 @@ constexpr float kWidthPerSpacing = 0.26F;
 constexpr float kMinWidthPerLength = 0.012F;
 constexpr float kMaxWidthPerLength = 0.055F;
 constexpr float kCullMargin = 1.3F;  // of a blade's length, around its root
-/// The sine of the angle below a body's horizon from which on not even the tips of its hairs are seen.
+/// The sine of the angle below a body's horizon from which on even the tips of its hairs are hidden.
 constexpr float kBehind = 0.5F;
 
 /// A few broad waves over the ground, from -1 to 1: the meadow's patches.
@@ -104,7 +104,7 @@ void BladeSorter::sort(const View& view) {
     if (height_px < kFarPx) {
       const float part = std::min(height_px / kTinyPx, 1.0F);
       const float share = height_px >= kTinyPx ? 1.0F : std::max(0.5F * part * part, kFewest);
-      // Numbers that are spread evenly, whatever the share (the golden ratio's multiples).
+      // Evenly spread numbers for every share (multiples of the golden ratio).
       const double turns = static_cast<double>(i) * 0.6180339887498949;
       if (static_cast<float>(turns - std::floor(turns)) >= share) continue;
       levels_.back().blades.push_back(blade);

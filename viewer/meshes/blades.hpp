@@ -14,38 +14,38 @@
 
 namespace yuragi::viewer::meshes {
 
-/// What is drawn for a strand, in the layout that the shader of hair reads: three texels.
+/// The data of a strand, in the layout of the shader of hair: three texels.
 struct Blade {
   std::array<float, 3> root_m{};
   float width_m = 0.0F;
   std::array<float, 3> tint{};  ///< of its tip, linear light
   float facing_rad = 0.0F;      ///< bearing of its flat side
-  float strand = 0.0F;          ///< its number; a whole one
+  float strand = 0.0F;          ///< its number, an integer
   float length_m = 0.0F;
-  float opening = 0.0F;  ///< how much the coat parts there (partings.hpp)
+  float opening = 0.0F;  ///< how far the coat parts there (partings.hpp)
   float unused = 0.0F;
 };
 
-/// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted as a coat is, by
-/// patches and at random (grass has its colour from its shader). The same skeleton always gives the same blades.
+/// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted like a coat, by
+/// patches and at random (grass is colored by its shader). The same skeleton always gives the same blades.
 std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton);
 
 /// Blades of one level of detail.
 struct DetailLevel {
-  std::size_t rings = 1;      ///< of vertices above the root; at most the links
-  bool is_far = false;        ///< they are so small that one ribbon a strand is enough
+  std::size_t rings = 1;      ///< rings of vertices above the root; at most one per link
+  bool is_far = false;        ///< they are so small that one ribbon per strand suffices
   std::vector<Blade> blades;  ///< in view
 };
 
-/// Sorts blades by how large they are in the picture: a large one gets a ring of vertices a link, a small one fewer.
-/// Blades outside the picture are left out, those that a body hides (body.hpp), and the more of the very small ones the
-/// smaller they are, the others being wider for it. Pure; does not allocate once it has seen all blades in each level.
+/// Sorts blades by their size in the picture: a large one gets a ring of vertices per link, a small one fewer. Omitted
+/// are blades outside the picture, those hidden by a body (body.hpp), and an increasing share of the very small ones,
+/// the others being wider instead. Pure; does not allocate once it has seen all blades in each level.
 class BladeSorter {
  public:
-  static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
-  static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
+  static constexpr float kRingPx = 22.0F;      ///< a ring for each of this many pixels of a blade's height
+  static constexpr std::size_t kMinRings = 3;  ///< if there are as many links
   static constexpr float kFarPx = 20.0F;       ///< smaller ones are far; hair.vert.glsl has the same number
-  static constexpr float kTinyPx = 8.0F;       ///< of smaller ones, half are drawn or fewer
+  static constexpr float kTinyPx = 8.0F;       ///< of smaller ones, half or fewer are drawn
   static constexpr float kFewest = 1.0F / 32.0F;
   static constexpr std::size_t kFarRings = 2;
 

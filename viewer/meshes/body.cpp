@@ -15,12 +15,12 @@ namespace {
 
 constexpr std::size_t kUnknowns = 7;
 constexpr float kBelow_m = 0.02F;
-constexpr double kHairsAway = 2.5;  // a camera stays so many of their lengths away from the skin
+constexpr double kHairsAway = 2.5;  // a camera stays this many hair lengths away from the skin
 constexpr std::size_t kSkinRows = 40;
 constexpr std::size_t kSkinColumns = 80;
 using Equations = std::array<std::array<double, kUnknowns + 1>, kUnknowns>;
 
-/// Solves them in place (Gauss); false where they have no one solution.
+/// Solves them in place (Gauss). Returns false if there is no unique solution.
 bool solve(Equations& equations, std::array<double, kUnknowns>& solution) {
   for (std::size_t column = 0; column < kUnknowns; ++column) {
     std::size_t pivot = column;
@@ -39,7 +39,8 @@ bool solve(Equations& equations, std::array<double, kUnknowns>& solution) {
   return true;
 }
 
-/// Fits x^2, y^2, z^2, x z, x, y and z to 1 for all roots, in box coordinates; true where that is an ellipsoid.
+/// Fits x^2, y^2, z^2, x z, x, y and z to 1 for all roots, in box coordinates. Returns true if the result is an
+/// ellipsoid.
 bool fit(const pose::StrandSkeleton& coat, const glm::dvec3& middle_m, double unit_m, Body& body) {
   Equations equations{};
   for (std::size_t i = 0; i < coat.strand_count; ++i) {
@@ -90,15 +91,15 @@ Body body_of(const pose::StrandSkeleton& coat) {
     body.hair_m += coat.link_length_m[i] * static_cast<float>(coat.links_per_strand);
   }
   body.hair_m /= static_cast<float>(coat.strand_count);
-  // What the hairs stand on is nearly an ellipse's area, bulged.
+  // The area under the hairs is nearly that of an ellipse, bulged.
   const float area_m2 = 2.0F * (half_m.x * half_m.y + half_m.y * half_m.z + 1.5F * half_m.z * half_m.x);
   body.spacing_m = std::sqrt(area_m2 / static_cast<float>(coat.strand_count));
   return body;
 }
 
 CameraPlace outside(const Body& body, const CameraPlace& place) {
-  // On the view's line the eye is target + distance * back. Where it leaves an ellipsoid whose half axes are longer by
-  // what it stays away, that is the larger root of a quadratic.
+  // On the view's line the eye is target + distance * back. It leaves an ellipsoid whose half axes are extended by the
+  // distance to keep at the larger root of a quadratic.
   const double away_m = kHairsAway * static_cast<double>(body.hair_m);
   const double half_m =
       1.0 / std::sqrt(static_cast<double>(std::max({body.shape[0][0], body.shape[1][1], body.shape[2][2]})));

@@ -11,7 +11,7 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kSwingPerLength = 0.45F;  // how far a hanging cloth swings out
-constexpr float kFlyPerLength = 0.9F;     // how far a flag reaches, in whatever direction it flies
+constexpr float kFlyPerLength = 0.9F;     // a flag's reach in whatever direction it flies
 constexpr float kWaveRoom_m = 0.05F;      // above and below a surface
 constexpr float kRimPerSide = 0.05F;      // of a basin around water
 
@@ -74,7 +74,7 @@ Bounds bounds_of(const pose::GridSkeleton& cloth) {
   if (is_hoisted) return united(whole, widened(fixed, {reach_m, 0.0F, reach_m}));
   if (!cloth.is_first_column_fixed) return widened(whole, {0.3F * reach_m, 0.0F, 0.3F * reach_m});
 
-  // An arm may turn to any side of its pole.
+  // An arm can turn to any side of its pole.
   const float arm_m = std::hypot(edge_m.x, edge_m.z);
   const glm::vec3 top = joint_at_rest(cloth, 0, 0);
   return united(whole, widened({top, top}, {arm_m, 0.0F, arm_m}));
@@ -93,7 +93,7 @@ Bounds bounds_of(const pose::TreeSkeleton& tree) {
     }
   }
   if (is_empty) return {};
-  // A copy may be turned to any side of its foot.
+  // A copy can be turned to any side of its foot.
   const pose::StrandSkeleton& trunk = tree.levels.front().strands;
   const glm::vec3 foot = trunk.strand_count > 0 ? glm::vec3(trunk.root_x_m[0], trunk.root_y_m[0], trunk.root_z_m[0])
                                                 : (bounds.low_m + bounds.high_m) / 2.0F;

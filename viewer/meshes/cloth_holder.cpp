@@ -26,7 +26,8 @@ glm::vec3 on_ground(const glm::vec3& place) {
   return {place.x, std::min(0.0F, place.y), place.z};
 }
 
-/// The joints of the fixed edge that stand out most to either side of it, in their order; or some, evenly spread.
+/// The joints of the fixed edge that protrude most to either side of it, in their order; if there are none, some that
+/// are evenly spread.
 std::vector<glm::vec3> crests(const pose::GridSkeleton& cloth, const glm::vec3& aside) {
   constexpr float kFlat_m = 0.002F;
   constexpr float kEvery_m = 0.15F;
@@ -126,7 +127,7 @@ void add_flag_pole(const glm::vec3& top, const glm::vec3& low, SolidMesh& mesh) 
   mesh.add_tube(cleat - 0.8F * radius_m * up, cleat + 0.8F * radius_m * up, 0.4F * radius_m, 0.4F * radius_m, kRope);
 }
 
-/// How many things stand so far apart along a length; not many, however long it is.
+/// The number of things at this distance along a length, with an upper limit.
 int count_of(float length_m, float every_m) {
   return static_cast<int>(std::clamp(std::ceil(length_m / every_m), 0.0F, 100.0F));
 }

@@ -9,7 +9,7 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-/// The points along a side with so many joints.
+/// The number of points along a side with this many joints.
 std::size_t refined(std::size_t joints, int level) {
   if (joints < 2) return joints;
   const std::size_t cells = joints - 1;
@@ -52,7 +52,7 @@ std::vector<ClothSurface::Taps> ClothSurface::taps(std::size_t joints, std::size
     float here = 0.5F * (3.0F * t3 - 5.0F * t2 + 2.0F);
     float next = 0.5F * (t + 4.0F * t2 - 3.0F * t3);
     float after = 0.5F * (t3 - t2);
-    // Beyond the ends the cloth goes straight on.
+    // Beyond the ends the cloth is extended straight.
     if (first == 0) {
       here += 2.0F * before;
       next -= before;
@@ -128,7 +128,7 @@ void ClothSurface::write_bends(float reach_m, const ClothMeasure& lies, std::spa
   const float* const nx = normals_.data();
   const float* const ny = nx + size;
   const float* const nz = ny + size;
-  // Along the normal, from the middle between two points that lie on either side, over the square of half their way.
+  // Along the normal: the offset from the midpoint of the two neighbours, over the square of half their distance.
   const auto bend = [&](std::size_t i, std::size_t a, std::size_t b) {
     const glm::vec3 chord(x[b] - x[a], y[b] - y[a], z[b] - z[a]);
     const float sag =
@@ -175,7 +175,7 @@ void ClothSurface::write_rim(float half_thickness_m, std::span<float> points, st
     const glm::vec3 before = at(points_, rim_[i == 0 ? rim_.size() - 2 : i - 1]);
     const glm::vec3 next = at(points_, rim_[i + 1 == rim_.size() ? 1 : i + 1]);
     const glm::vec3 normal = at(normals_, rim_[i]);
-    // Around the edges in the order of rim(), the cloth is on the right of its normal.
+    // Following the edges in the order of rim(), the cloth is on the right of its normal.
     const glm::vec3 across = glm::cross(next - before, normal);
     const glm::vec3 out = across / (glm::length(across) + 1e-9F);
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {

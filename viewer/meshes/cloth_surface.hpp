@@ -13,8 +13,7 @@ namespace yuragi::viewer::meshes {
 
 /// The smooth surface of a cloth through its streamed joints, at as many points as a picture needs, and the rim that
 /// is its thickness. A Catmull-Rom spline along the rows and one along the columns (Catmull, Rom 1974, "A class of
-/// local interpolating splines"): it passes through every joint, and where the joints lie evenly on a plane, so does
-/// it.
+/// local interpolating splines"): it passes through every joint, and is a plane if the joints are evenly spaced on one.
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no.
 class ClothSurface {
@@ -23,33 +22,33 @@ class ClothSurface {
   static constexpr int kFinest = 2;     ///< four times as many
   static constexpr std::size_t kMaxPoints = std::size_t{1} << 18;
 
-  /// Of joints that lie so. 2 to the power of `level` cells for each cell of theirs along a row, of `level` and
-  /// `finer_down` along a column, but no more than kMaxPoints points in all.
+  /// For joints in this layout. Has 2 to the power of `level` cells for each cell of theirs along a row, of `level` and
+  /// `finer_down` along a column, but at most kMaxPoints points in total.
   ClothSurface(const GridLayout& joints, int level, int finer_down = 0);
 
   /// `joints`: all x, then all y, then all z.
   void move_to(std::span<const float> joints);
 
-  /// How the points lie; without padding.
+  /// The layout of the points, without padding.
   const GridLayout& layout() const { return layout_; }
   /// All x, then all y, then all z, like the next.
   std::span<const float> points() const { return points_; }
   std::span<const float> normals() const { return normals_; }
-  /// How much the cloth is bent at each point, as over `reach_m` (of the cloth, in both directions): above 0 it is
-  /// hollow on the side of its normal; in 1/m.
+  /// Writes the curvature of the cloth at each point, measured over `reach_m` (of the cloth, in both directions): above
+  /// 0 it is hollow on the side of its normal; in 1/m.
   void write_bends(float reach_m, const ClothMeasure& lies, std::span<float> bends_per_m) const;
 
-  /// Each point's place on the cloth, metres: all that lies to the right, then all that lies down.
+  /// Each point's place on the cloth, metres: all x (to the right), then all y (down).
   std::vector<float> places_m(const ClothMeasure& lies) const;
 
-  /// The points around the free and the fixed edges, one after the other, back to the first.
+  /// The points around the free and the fixed edges, in order, back to the first.
   std::span<const std::size_t> rim() const { return rim_; }
-  /// Writes two points for each of rim(), half a thickness to either side of the cloth, and their normals, which point
-  /// away from it and to that side: all x, then all y, then all z.
+  /// Writes two points for each of rim(), half a thickness on either side of the cloth, and their normals, which point
+  /// outward to that side: all x, then all y, then all z.
   void write_rim(float half_thickness_m, std::span<float> points, std::span<float> normals) const;
 
  private:
-  /// Where a point takes its place from: four joints in a row, and how much of each.
+  /// The weights of a point: four joints in a row, and the share of each.
   struct Taps {
     std::size_t at[4];
     float weight[4];

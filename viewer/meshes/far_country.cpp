@@ -93,7 +93,7 @@ class Outline {
   std::size_t range_;
   FarRange form_;
   math::RandomStream random_;
-  int crowns_;  // as many as stand around the circle
+  int crowns_;  // the number around the circle
 };
 
 }  // namespace

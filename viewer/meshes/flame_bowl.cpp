@@ -33,7 +33,7 @@ FlameBowl flame_bowl(const pose::SurfaceSkeleton& surface) {
   const Bounds bounds = bounds_of(surface);
   const float foot_m = *std::min_element(surface.rest_y_m.begin(), surface.rest_y_m.end());
   const glm::vec3 middle((bounds.low_m.x + bounds.high_m.x) / 2.0F, 0.0F, (bounds.low_m.z + bounds.high_m.z) / 2.0F);
-  // (A flat sheet is wider, so that its flames have room to lean; they burn from its middle.)
+  // (A flat sheet is wider, so that its flames can lean; they burn from its middle.)
   const float reach_m = std::max(bounds.high_m.x - bounds.low_m.x, bounds.high_m.z - bounds.low_m.z);
   const float radius_m = 0.5F * (surface.is_closed ? 1.0F : 0.22F) * reach_m;
 
@@ -71,7 +71,7 @@ FlameBowl flame_bowl(const pose::SurfaceSkeleton& surface) {
     mesh.add_ball(at(turn_rad, spread_m, 0.03F * radius_m), 0.085F * radius_m, kIron);
   }
 
-  // Logs lean together over the embers; their lower ends are charred less.
+  // Logs lean together over the embers; their lower ends are less charred.
   const math::RandomStream chance(0, math::stream_id("logs and stones"));
   std::uint64_t drawn = 0;
   const auto between = [&](float low, float high) {

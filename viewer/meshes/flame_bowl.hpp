@@ -15,7 +15,7 @@ struct FlameBowl {
   float embers_radius_m = 0.0F;
 };
 
-/// Empty where the surface is. Pure.
+/// Empty if the surface is. Pure.
 FlameBowl flame_bowl(const pose::SurfaceSkeleton& surface);
 
 }  // namespace yuragi::viewer::meshes

@@ -11,12 +11,12 @@ namespace {
 
 constexpr std::size_t kLayerCells = FlameGas::kAcross * FlameGas::kAcross;
 
-/// The edge of a flame, which is seen, rises by so much of sqrt(g h), from a part of that at the foot on. The gas on
-/// its axis is faster: by 1.9 Q^0.2 m/s, Q in kW (B. McCaffrey 1979, "Purely buoyant diffusion flames", the
-/// intermittent flame), which is 1.4 sqrt(g h) of a flame of h = 0.2 Q^0.4 m.
+/// The visible edge of a flame rises at this part of sqrt(g h); at the foot it is slower. The gas on its axis is
+/// faster: by 1.9 Q^0.2 m/s, Q in kW (B. McCaffrey 1979, "Purely buoyant diffusion flames", the intermittent flame),
+/// which is 1.4 sqrt(g h) for a flame of h = 0.2 Q^0.4 m.
 constexpr double kRise = 0.77;
 constexpr double kRiseAtFoot = 0.45;
-constexpr double kFreeAt = 0.6;  ///< of the height, where it is as fast as it gets
+constexpr double kFreeAt = 0.6;  ///< part of the height at which it reaches its full speed
 constexpr double kGravity_m_s2 = 9.81;
 
 /// A fire puffs (B. Cetegen, T. Ahmed 1993, "Experiments on the periodic instability of buoyant plumes and pool
@@ -25,27 +25,28 @@ constexpr double kPuff_hz_sqrt_m = 1.5;
 constexpr double kPinch_per_s = 3.9;  ///< how fast a puff narrows the gas above it, at most
 constexpr double kPuffless_m_s = 8.0;
 
-/// Eddies of the gas, and what wind adds to them.
+/// Speed of the gas's eddies, and the wind's contribution.
 constexpr double kEddy_m_s = 0.20;
 constexpr double kEddyPerWind = 0.006;
 constexpr std::size_t kEddyCells = 6;
 
-/// The heat that the gas loses in a second, and the time in which soot gets thin.
+/// The heat that the gas loses per second, and the time in which soot thins.
 constexpr double kBurn_per_s = 0.66;
 constexpr double kSootLasts_s = 1.1;
 /// Streamed heat is 0.42 on average; gas that leaves the foot is all aflame.
 constexpr float kHeatPerStreamed = 1.5F;
-/// What is shown follows the gas with a time constant of 0.11 s, like a picture with a long exposure: flashes are
-/// weaker (flame_flash_test.cpp: in 20 s of calm 0.22 of a field flashes).
+/// The shown gas follows the computed one with a time constant of 0.11 s, like a picture with a long exposure: flashes
+/// are weaker (flame_flash_test.cpp: in 20 s of calm 0.22 of a field flashes).
 constexpr float kShownPerStep = 0.145F;
 constexpr float kMinHeat = 0.06F;
 constexpr float kMinSoot = 0.02F;
-/// Soot is gone before it comes to the grid's sides and its end, which are never seen: from these parts of the way on.
+/// Soot disappears before it reaches the grid's sides and its end, so that these are never visible: from these parts of
+/// the way on.
 constexpr float kSootThins = 0.55F;
 constexpr float kSootIsGone = 0.95F;
 constexpr float kSootThinsUp = 0.45F;
 
-/// Beyond it a step is no longer a whole number of its unit.
+/// Beyond it a step is no longer an integer number of its unit.
 constexpr double kMaxTime_s = 1e12;
 
 bool is_time(double time_s) {
@@ -69,7 +70,7 @@ float smooth(float t) {
 /// Three smooth random fields on the grid, each repeating upward: a vector potential.
 std::vector<std::array<float, 3>> potential() {
   constexpr std::size_t n = FlameGas::kAcross;
-  constexpr std::size_t lattice_up = 4;  // cells of 16 layers: what passes a place has to flash slowly
+  constexpr std::size_t lattice_up = 4;  // cells of 16 layers: changes at a place must be slow enough not to flash
   const math::RandomStream random(0, math::stream_id("flame eddies"));
   std::vector<std::array<float, 3>> values(kLayerCells * FlameGas::kLayers);
   constexpr std::size_t across = n / kEddyCells + 2;
@@ -127,7 +128,7 @@ FlameGas::FlameGas(const FlameVolume& volume)
     risen_s += layer_m / rise_m_s;
   }
 
-  // The curl of a potential has no divergence: it tears gas, and makes none.
+  // The curl of a potential has no divergence: it moves gas, and creates none.
   const std::vector<std::array<float, 3>> of = potential();
   constexpr std::size_t n = kAcross;
   const auto at = [&](std::size_t layer, std::size_t z, std::size_t x) -> const std::array<float, 3>& {
@@ -194,7 +195,7 @@ void FlameGas::step(double time_s, double given_wind_m_s, const FlameVolume& vol
   constexpr float middle = 0.5F * static_cast<float>(n - 1);
   constexpr auto dt_s = static_cast<float>(kStep_s);
   const float windy = static_cast<float>(wind_m_s / kPuffless_m_s);
-  // A flame that lies in the wind is drawn out by it.
+  // The wind draws out a flame that leans.
   const float faster = 1.0F + 0.15F * windy / (1.0F + 0.3F * windy);
   const auto pinch = static_cast<float>(kPinch_per_s) / std::sqrt(1.0F + windy * windy);
   const auto eddy_m_s = static_cast<float>(kEddy_m_s + kEddyPerWind * wind_m_s);
@@ -225,7 +226,7 @@ void FlameGas::step(double time_s, double given_wind_m_s, const FlameVolume& vol
     const auto phase = static_cast<float>(phase_rad - 2.0 * kPi * std::floor(phase_rad / (2.0 * kPi)));
     const float grown = smooth(v / 0.5F);
     const float stir = eddy_m_s * (0.25F + 0.75F * smooth(v / 0.7F)) * dt_s;
-    // Two flights of eddies, one of which rises more slowly, so that they change on their way.
+    // Two sets of eddies, one of which rises more slowly, so that they change on their way.
     const auto flight = [&](double carried, std::size_t from) {
       const double at = static_cast<double>(layer + 8 * kLayers + from) - carried;
       const auto whole = static_cast<std::size_t>(at);
@@ -239,7 +240,7 @@ void FlameGas::step(double time_s, double given_wind_m_s, const FlameVolume& vol
     const Velocity* const two_high = eddies_.data() + (two + 1) % kLayers * kLayerCells;
     const std::uint8_t* const source = row < volume.layers() ? streamed.data() + row * kLayerCells : nullptr;
     const float feeds = source == nullptr ? 0.0F : dt_s * (30.0F * smooth((0.26F - v) / 0.2F));
-    // Laid over, it meets less of its own heat on its way, and burns on far to the lee.
+    // A leaning flame meets less of its own heat, and burns on far to the lee.
     const float burnt = static_cast<float>(kBurn_per_s) * dt_s / (1.0F + 0.8F * std::max(windy - 0.4F, 0.0F));
     const float clears = dt_s / static_cast<float>(kSootLasts_s);
 
@@ -285,7 +286,7 @@ void FlameGas::step(double time_s, double given_wind_m_s, const FlameVolume& vol
         };
         cell.heat = read(&Cell::heat);
         cell.soot = read(&Cell::soot);
-        // What is thin meets more air, and burns out sooner.
+        // Thin gas meets more air, and burns out sooner.
         const float left = std::max(cell.heat - burnt * (0.55F + 0.9F * (1.0F - cell.heat)), 0.0F);
         cell.soot += 1.2F * (cell.heat - left) * smooth((0.5F - left) / 0.3F) - clears * cell.soot;
         cell.heat = left;

@@ -10,14 +10,14 @@
 
 namespace yuragi::viewer::meshes {
 
-/// The burning gas of a flame, which remembers: the heat that the scene streams enters it at the foot, rises, is torn
-/// by eddies and by the puffs of the fire, and burns out on its way. What a puff pinches off flies on above the flame.
+/// The burning gas of a flame: the streamed heat enters at the foot, rises, is torn by eddies and by the puffs of the
+/// fire, and burns out on its way. Gas that a puff cuts off flies on above the flame.
 ///
 /// A grid in the coordinates of FlameVolume: kAcross x kAcross cells a layer, kLayers layers from the foot to
-/// FlameVolume::kReach of the way to the top, so that it bends as the streamed rows do. Advances in fixed steps of
-/// time (semi-Lagrangian: J. Stam 1999, "Stable fluids"), so that the same times give the same bits. The first time,
-/// and any after a jump, is settled: kSettling_s have already passed in it. Pure; allocates when it is made, never
-/// afterwards. Thread-safe: no.
+/// FlameVolume::kReach of the way to the top, so that it bends as the streamed rows do. Advances in fixed steps of time
+/// (semi-Lagrangian: J. Stam 1999, "Stable fluids"), so that the same times give the same bits. The first time, and any
+/// after a jump, starts settled, as if kSettling_s had passed. Pure; allocates when it is made, never afterwards.
+/// Thread-safe: no.
 class FlameGas {
  public:
   static constexpr std::size_t kAcross = FlameVolume::kAcross;
@@ -25,22 +25,22 @@ class FlameGas {
   static constexpr double kStep_s = 1.0 / 60.0;
   static constexpr double kSettling_s = 2.5;
   static constexpr double kJump_s = 1.0;
-  static constexpr double kMaxWind_m_s = 100.0;  ///< a stronger one counts as this
+  static constexpr double kMaxWind_m_s = 100.0;  ///< a stronger wind counts as this
 
-  /// Of a volume that is not empty.
+  /// For a volume that is not empty.
   explicit FlameGas(const FlameVolume& volume);
 
   /// Advances to a moment; the volume is that moment's. The wind is a speed; one that is negative or not finite counts
   /// as none. A time that is not finite, or beyond any date, changes nothing.
   void advance_to(double time_s, double wind_m_s, const FlameVolume& volume);
-  /// Begins anew, settled, at a moment.
+  /// Starts again at a moment, settled.
   void settle_at(double time_s, double wind_m_s, const FlameVolume& volume);
 
   /// Layer after layer from the foot, two bytes a cell: heat and soot, 0 to 255.
   std::span<const std::uint8_t> texels() const { return texels_; }
-  /// Of each layer of kLayers: how far from its middle there is gas, as a part of its half side; 0: there is none.
+  /// For each of kLayers layers: the extent of the gas from its middle, as a part of its half side; 0: no gas.
   std::span<const float> extents() const { return extents_; }
-  /// How far the gas has risen, as a part of the flame's height, modulo kRisenPeriod.
+  /// The distance that the gas has risen, as a part of the flame's height, modulo kRisenPeriod.
   double risen() const { return risen_; }
   static constexpr double kRisenPeriod = 100.0;
 

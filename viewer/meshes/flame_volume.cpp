@@ -11,11 +11,11 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-/// The half side of a layer, in radii of its outermost shell: that much the streamed displacements may swell it.
+/// The half side of a layer, in radii of its outermost shell: room for the streamed displacements.
 constexpr float kRoom = 1.45F;
-/// Outside of its outermost shell the heat falls to nothing over this part of the radius.
+/// Outside of its outermost shell the heat falls to zero over this part of the radius.
 constexpr float kSoftEdge = 0.40F;
-/// No layer is thinner than this part of the thickest: where the body ends its tongues do, of their own.
+/// Minimum thickness of a layer, as a part of the thickest: at the end of the body the tongues end by themselves.
 constexpr float kThinnest = 0.66F;
 constexpr float kMinRadius_m = 1e-3F;
 constexpr float kTurn_rad = static_cast<float>(2.0 * kPi);
@@ -34,7 +34,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   radius_.resize(surface.columns * layers_);
   hot_.resize(surface.columns * layers_);
 
-  // How thick each layer is; a row's middle is that of its outermost ring.
+  // The thickness of each layer; a row's middle is that of its outermost ring.
   std::vector<float> radii_m(layers_);
   std::size_t thickest = 0;
   for (std::size_t layer = 0; layer < layers_; ++layer) {
@@ -60,7 +60,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
 
   for (std::size_t layer = layers_; layer < rows_.size(); ++layer) rows_[layer].half_m = rows_[layers_ - 1].half_m;
 
-  // Where the columns stand around the middle, and the shells within one another.
+  // The positions of the columns around the middle, and of the shells within one another.
   const std::size_t row = row_of(thickest) * surface.columns;
   const auto out_m = [&](std::size_t column) {
     return glm::vec2(surface.rest_x_m[row + column] - middles_m_[thickest].x,
@@ -140,7 +140,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
     }
     middles_m_[layer] += share * (middle_m - middles_m_[layer]);
 
-    // How far each point stands from the middle, in radii of the outermost shell at rest.
+    // Each point's distance from the middle, in radii of the outermost shell at rest.
     double sum = 0.0;
     float* const hot_here = hot_.data() + layer * surface.columns;
     float* const radius_here = radius_.data() + layer * surface.columns;
@@ -190,7 +190,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
           level = inner_level;
         }
       }
-      // Nothing is cut off at the end of the layer.
+      // No hard cut at the end of the layer.
       level *= std::min(1.0F, 8.0F * std::max(0.0F, 0.95F - at.radius));
       *texel++ = static_cast<std::uint8_t>(std::lrint(255.0F * std::clamp(level, 0.0F, 1.0F)));
     }
@@ -198,7 +198,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
   mean_heat_ = static_cast<float>(heat / static_cast<double>(layers_ * surface.columns));
   hot_middle_m_ = heat > 0.0 ? glm::vec3(hot_m / heat) : (middles_m_.front() + middles_m_[layers_ - 1]) / 2.0F;
 
-  // Above the top it goes on as it does over the last quarter.
+  // Above the top the shape of the last quarter continues.
   const std::size_t last = layers_ - 1;
   const std::size_t quarter = std::max<std::size_t>(last / 4, 1);
   const glm::vec3 goes_on_m = (middles_m_[last] - middles_m_[last - quarter]) / static_cast<float>(quarter);
@@ -228,13 +228,13 @@ void FlameVolume::wrap(std::span<const float> extents) {
 }
 
 void FlameVolume::wrap_to(float top_v, std::span<const float> extents) {
-  // Its corners stand out so far that its sides do not cut the layers.
+  // Its corners are so far out that its sides do not cut the layers.
   const float out = 1.0F / std::cos(0.5F * kTurn_rad / static_cast<float>(kHullSides));
   const auto put = [&](HullVertex& vertex, float east_m, float south_m, float v) {
     vertex = {place_m(east_m, south_m, v), {east_m, south_m, v}};
   };
   const float ring_v = top_v / static_cast<float>(kHullRings - 1);
-  // The widest of what is nearer than the next rings.
+  // The widest extent nearer than the next rings.
   const auto extent_at = [&](float v) {
     if (extents.empty()) return 1.0F;
     const float per_v = static_cast<float>(extents.size() - 1) / kReach;

@@ -8,15 +8,15 @@
 
 namespace yuragi::viewer::meshes {
 
-/// A level floor of boards over the ground, on which no grass grows.
+/// A level floor of boards over the ground, without grass.
 struct Floor {
   glm::vec3 middle_m{0.0F};     ///< of its upper side
-  glm::vec2 along{1.0F, 0.0F};  ///< x, z: a unit vector, across which its boards lie
+  glm::vec2 along{1.0F, 0.0F};  ///< x, z: a unit vector perpendicular to its boards
   glm::vec2 half_m{0.0F};       ///< along it, and along its boards
   friend bool operator==(const Floor&, const Floor&) = default;
 };
 
-/// Is a place on the ground (x, z) on it, or no farther than so from it along either side?
+/// Returns true if a place on the ground (x, z) is on it, or at most `beyond_m` from it along either side.
 inline bool is_on(const Floor& floor, const glm::vec2& at_m, float beyond_m) {
   const glm::vec2 way = at_m - glm::vec2(floor.middle_m.x, floor.middle_m.z);
   const float aside_m = way.x * floor.along.x + way.y * floor.along.y;

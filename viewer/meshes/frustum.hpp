@@ -5,7 +5,7 @@
 
 namespace yuragi::viewer::meshes {
 
-/// What a camera sees, as tangents of the angles between its direction of view and the picture's sides. A camera that
+/// The view of a camera, as tangents of the angles between its direction of view and the picture's sides. A camera that
 /// looks at right angles through the middle of its picture has left = -right and bottom = -top.
 struct Frustum {
   double left = -1.0;
@@ -14,8 +14,8 @@ struct Frustum {
   double top = 1.0;
 };
 
-/// What an eye sees through a screen, when it looks at right angles to it; the screen need not be before it.
-/// Right-handed axes, meters. (R. Kooima, "Generalized Perspective Projection", 2009.) The screen is a rectangle, and
+/// The view of an eye through a screen, perpendicular to it; the eye need not be before the screen's middle.
+/// Right-handed axes, metres. (R. Kooima, "Generalized Perspective Projection", 2009.) The screen is a rectangle, and
 /// the eye is in front of it.
 Frustum frustum_through(const glm::dvec3& lower_left_m, const glm::dvec3& lower_right_m, const glm::dvec3& upper_left_m,
                         const glm::dvec3& eye_m);

@@ -8,13 +8,13 @@
 
 namespace yuragi::viewer::meshes {
 
-/// How the points of a cloth or a surface lie in their arrays: point (column, row) at row * stride + column.
+/// The layout of the points of a cloth or a surface in their arrays: point (column, row) at row * stride + column.
 struct GridLayout {
   std::size_t columns = 0;
   std::size_t rows = 0;
   std::size_t stride = 0;
   bool is_closed = false;  ///< the last column of a shell is followed by its first
-  std::size_t shells = 1;  ///< the columns are so many rings, one within another
+  std::size_t shells = 1;  ///< the columns are this many rings, one within another
 
   std::size_t size() const { return rows * stride; }
 };
@@ -22,7 +22,7 @@ GridLayout layout_of(const pose::GridSkeleton& cloth);
 GridLayout layout_of(const pose::SurfaceSkeleton& surface);
 
 /// Two triangles for each cell, three indices of points each, all with the same winding; shell after shell. With a
-/// `step` above 1, of an open grid: only each so many-th column and row, and the last ones, are used.
+/// `step` above 1, for an open grid: only each step-th column and row, and the last ones, are used.
 std::vector<std::uint32_t> grid_triangles(const GridLayout& layout, std::size_t step = 1);
 
 /// A unit normal for each point: the cross product of the differences between its neighbours along the row and along

@@ -15,14 +15,14 @@ namespace {
 
 constexpr float kTexel_m = GrowthMap::kSide_m / static_cast<float>(GrowthMap::kTexels);
 constexpr float kLawn = 0.25F;         // the growth of a lawn
-constexpr float kMargin_m = 0.8F;      // of lawn around a thing
-constexpr float kSlope_m = 4.0F;       // from a lawn's border on to tall grass
+constexpr float kMargin_m = 0.8F;      // width of the lawn around a thing
+constexpr float kSlope_m = 4.0F;       // from a lawn's border to tall grass
 constexpr float kShore_m = 0.5F;       // around water, without blades
-constexpr float kFloorEdge_m = 0.05F;  // beyond which blades stand again
-constexpr float kTrampled_m = 1.6F;   // around a fire, until grass is whole: some texels, so that it begins in a circle
-constexpr float kUnderFire_m = 0.2F;  // of it inside the fire's border
-constexpr float kTrampledWander = 0.25F;  // of how far the lawn's border wanders
-/// A texel with so many blades, of those that its area has on average, is taken as full.
+constexpr float kFloorEdge_m = 0.05F;  // beyond this distance blades grow again
+constexpr float kTrampled_m = 1.6F;  // around a fire, until grass is whole: some texels, so that the border is a circle
+constexpr float kUnderFire_m = 0.2F;      // part of it inside the fire's border
+constexpr float kTrampledWander = 0.25F;  // how far the lawn's border varies
+/// A texel with this share of its usual number of blades counts as full.
 constexpr float kFullTexel = 0.5F;
 
 float smooth(float t) {
@@ -30,7 +30,7 @@ float smooth(float t) {
   return x * x * (3.0F - 2.0F * x);
 }
 
-/// How far a lawn's border wanders out beyond its margin: so much at most, changing over such a length.
+/// How far a lawn's border varies beyond its margin: maximum distance, and length of a variation.
 struct Wander {
   float most_m;
   float length_m;
@@ -38,8 +38,7 @@ struct Wander {
 constexpr std::array<Wander, 3> kWander{{{1.2F, 7.0F}, {0.7F, 2.9F}, {0.3F, 1.3F}}};
 constexpr float kMaxWander_m = kWander[0].most_m + kWander[1].most_m + kWander[2].most_m;
 
-/// Smooth noise from 0 to 1, always the same for the same seed: chances on a grid of spacing 1, with what is between
-/// them.
+/// Smooth noise from 0 to 1, the same for the same seed: random values on a grid of spacing 1, interpolated.
 float noise_at(const glm::vec2& at, std::uint64_t seed) {
   const math::RandomStream random(seed, math::stream_id("lawn borders"));
   const glm::vec2 low = glm::floor(at);
@@ -142,7 +141,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
       }
       continue;
     }
-    // On the ground that water takes no blade stands.
+    // No blade stands on ground that water covers.
     const bool is_water = thing.kind == Standing::Kind::kWater;
     const Bounds box = thing.floor ? united(thing.bounds, bounds_of(*thing.floor)) : thing.bounds;
     const float reach_m = kMargin_m + kMaxWander_m + kSlope_m;
@@ -156,7 +155,8 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
         float is_taken =
             (is_water && out_m <= kShore_m) || (thing.floor && is_on(*thing.floor, at, kFloorEdge_m)) ? 1.0F : 0.0F;
         if (is_water && thing.shore != nullptr) {
-          // Fewer and fewer blades down the bank. A shore is finer than a texel, but not than what lies between two.
+          // The number of blades decreases down the bank. A shore is finer than a texel, but not than the interpolation
+          // between two.
           out_m = thing.shore->out_m(at) - 0.6F * thing.shore->bank_m(at);
           is_taken = std::clamp(0.4F - out_m / kTexel_m, 0.0F, 1.0F);
         }
@@ -171,7 +171,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
           growth *= smooth((round_m + kUnderFire_m - kTrampledWander * border_m) / kTrampled_m);
         }
         if (thing.kind == Standing::Kind::kFur) {
-          // An animal lies in the tall grass: its body is round.
+          // An animal lies in the tall grass, because its body is round.
           growth = kLawn + (1.0F - kLawn) *
                                smooth((glm::length(off_m / half_m) - 0.7F) * std::min(half_m.x, half_m.y) / kTexel_m);
         }

@@ -22,13 +22,13 @@ struct Ground {
                                 ///< MeadowWaves, 0 if it is streamed; of no use
   glm::vec4 bends_axes{
       0.0F};  ///< a matrix, column by column: from metres behind that corner to parts of the grid's sides
-  glm::vec4 bend_mean{0.0F};                 ///< east, south, radians; of no use; w: share of tall grass
+  glm::vec4 bend_mean{0.0F};                 ///< east, south, radians; unused; w: share of tall grass
   glm::vec4 growth_place{0.0F};              ///< x, z of the low corner of the map of growth, metres; 1 / its sides
   glm::vec4 stand{0.6F, 0.6F, 0.0F, 0.14F};  ///< tall grass: mean length, metres; curl, radians; number of the
                                              ///< ScreenDoor through which it fades; tilt, radians
 };
 
-/// What a stand of streamed blades is like.
+/// The properties of a stand of streamed blades.
 struct Stand {
   float length_m = 0.6F;  ///< mean
   float curl_rad = 0.6F;  ///< mean, from foot to tip, at rest
@@ -44,10 +44,10 @@ struct BendGrid {
   glm::vec2 to_next_m{1.0F, 0.0F};    ///< from a node to the next one in its row
   glm::vec2 to_next_row_m{0.0F, 1.0F};
 };
-/// The grid that the strands stand on; none where they stand on none.
+/// The grid on which the strands stand; nullopt if there is none.
 BendGrid bend_grid_of(const pose::StrandSkeleton& skeleton);
 
-/// What stands on the ground, with how much of it is to be seen (0 to 1).
+/// A thing on the ground, and its visible share (0 to 1).
 struct Standing {
   enum class Kind : std::uint8_t { kGrass, kWater, kFur, kFire, kOther };
   Kind kind = Kind::kOther;
@@ -59,9 +59,9 @@ struct Standing {
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
-/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, up to a border
-/// that wanders and is the same for the same things, trampled around a fire, and grows up to fur. Where there is water
-/// or a floor no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
+/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, up to an
+/// irregular border that is the same for the same things, trampled around a fire, and reaches up to fur. On water and
+/// floors there are no blades. Beyond the map its edge values continue.
 class GrowthMap {
  public:
   static constexpr std::size_t kTexels = 256;  ///< a side
@@ -75,8 +75,8 @@ class GrowthMap {
   float growth_at(float x_m, float z_m) const;
   float blades_at(float x_m, float z_m) const;
   float water_at(float x_m, float z_m) const;
-  /// May a blade that is not streamed stand in this rectangle (x, z)? Not on water, nor, where it is one of tall grass,
-  /// where streamed blades stand.
+  /// Returns true if a blade that is not streamed can stand in this rectangle (x, z): not on water, nor, if it is tall
+  /// grass, among streamed blades.
   bool is_free(const glm::vec2& low_m, const glm::vec2& high_m, bool is_tall) const;
 
  private:

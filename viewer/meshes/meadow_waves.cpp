@@ -12,19 +12,19 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-// Waves of the tile: so many periods along a side at least and at most; the more, the weaker.
+// Waves of the tile: minimum and maximum number of periods along a side; those with more are weaker.
 constexpr double kMinPeriods = 1.5;
 constexpr double kMaxPeriods = 9.0;
 constexpr double kSteepness = 1.4;
 constexpr float kMaxGust = 2.2F;  // standard deviations
 
-/// Grass lies down by the wind's pressure, ever less the farther it is down.
+/// Grass bends under the wind's pressure, less and less the farther it is down.
 constexpr float kLyingDown_rad = 0.85F;
 constexpr float kHalfDown_m_s = 8.0F;
 
 constexpr float kFullWaves_m_s = 1.0F;  // in less wind waves are smaller; in still air there are none
 
-/// A slow frame is no reason to travel farther than the tile.
+/// After a slow frame the waves still travel less than the tile.
 constexpr double kMaxStep_s = 1.0;
 
 }  // namespace
@@ -35,7 +35,7 @@ MeadowWaves::MeadowWaves() : gusts_(kNodes * kNodes, 0.0F) {
   std::uint64_t draw = 0;
   for (int along = 0; along <= most; ++along) {
     for (int across = -most; across <= most; ++across) {
-      if (along == 0 && across <= 0) continue;  // the same wave as its opposite
+      if (along == 0 && across <= 0) continue;  // the same wave as the opposite one
       const double periods = std::hypot(along, across);
       const double phase_rad = 2.0 * kPi * chance.uniform(draw++);
       if (periods < kMinPeriods || periods > kMaxPeriods) continue;

@@ -9,8 +9,8 @@
 namespace yuragi::viewer::meshes {
 
 /// Waves of gusts over the grass of scenes without streamed ground: a square tile of bends that travels downwind at the
-/// wind's speed and repeats without a seam. They are made up, as the gusts of the stream are known at one place alone.
-/// Pure: the same steps give the same state. The first step, and one back in time, takes the wind as it is.
+/// wind's speed and repeats without a seam. They are synthetic, because the stream has gusts at one place only. Pure:
+/// the same steps give the same state. The first step, and one back in time, starts settled in that wind.
 class MeadowWaves {
  public:
   static constexpr std::size_t kNodes = 64;    ///< a side
@@ -28,7 +28,7 @@ class MeadowWaves {
 
   /// How far grass is bent by the mean wind: east, south, radians.
   glm::vec2 mean_bend() const;
-  /// Where the tile's corner is: how far the waves have travelled, metres, within the tile's side.
+  /// The tile's corner: how far the waves have travelled, metres, modulo the tile's side.
   const glm::vec2& drifted_m() const { return drifted_m_; }
 
  private:

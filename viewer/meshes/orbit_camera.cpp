@@ -9,22 +9,22 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr double kOrbit_deg = 180.0;  // for a drag over the picture's height
-constexpr double kZoomStep = 0.88;    // of the distance, a notch
+constexpr double kZoomStep = 0.88;    // factor on the distance per notch
 constexpr double kGlide_s = 0.08;     // the time constant with which it follows a drag
 constexpr double kTurning_deg_s = 2.0;
 constexpr double kMaxTarget_m = 500.0;  // from the origin
 constexpr double kAcrossPitch_deg = 6.0;
-constexpr double kFieldHeights = 5.0;       // so many times as wide as high: something to look across
-constexpr double kAcrossHeights = 1.05;     // of the eye, in heights of what it looks across
-constexpr double kFromCorner_deg = 32.0;    // how far a broad side is looked at aslant, where the wind allows it
-constexpr double kMaxAlongWind_deg = 30.0;  // from straight across the wind
-constexpr double kFlatHeights = 0.2;        // of what is flat, against its width
+constexpr double kFieldHeights = 5.0;       // wider than this many heights: something to look across
+constexpr double kAcrossHeights = 1.05;     // height of the eye, in heights of the field
+constexpr double kFromCorner_deg = 32.0;    // angle from which a broad side is viewed, if the wind allows it
+constexpr double kMaxAlongWind_deg = 30.0;  // maximum deviation from straight across the wind
+constexpr double kFlatHeights = 0.2;        // a flat thing: height relative to its width
 constexpr double kFlatPitch_deg = 7.0;
 constexpr double kFlatShown = 0.6;  // of its width
 constexpr double kEyeHeights = 0.45;
 constexpr double kSittingEye_m = 0.5;
 constexpr double kStandingEye_m = 1.5;
-constexpr double kLowestHorizon = 0.55;  // so far from the picture's middle to its lower side
+constexpr double kLowestHorizon = 0.55;  // distance from the picture's middle to its lower side
 constexpr double kFilled = 0.95;         // of the picture
 constexpr double kUsualAspect = 16.0 / 9.0;
 constexpr double kFar_m = 2000.0;
@@ -57,7 +57,7 @@ CameraPlace limited(const CameraPlace& place) {
     to.target_m[axis] = std::clamp(finite_or(place.target_m[axis], 0.0), axis == 1 ? 0.0 : -kMaxTarget_m, kMaxTarget_m);
   }
   to.field_of_view_deg = std::clamp(finite_or(place.field_of_view_deg, 40.0), kMinFieldOfView_deg, kMaxFieldOfView_deg);
-  // As far up as the eye stays above the ground.
+  // The maximum pitch that keeps the eye above the ground.
   const double sine = std::clamp((OrbitCamera::kMinEye_m - to.target_m.y) / to.distance_m, -1.0, 1.0);
   to.pitch_deg =
       std::clamp(finite_or(place.pitch_deg, 10.0), std::max(OrbitCamera::kMinPitch_deg, glm::degrees(std::asin(sine))),
@@ -102,7 +102,7 @@ void OrbitCamera::orbit(double right, double down) {
 }
 
 void OrbitCamera::pan(double right, double down, double aspect) {
-  // The point of the target's plane under the pointer stays there: the picture's height in metres at the target.
+  // Keeps the point of the target's plane under the pointer: the picture's height in metres at the target.
   const double height_m = 2.0 * wanted_.distance_m * tangent_up(wanted_.field_of_view_deg, aspect);
   const double heading = glm::radians(wanted_.heading_deg);
   const glm::dvec3 to_right(std::cos(heading), 0.0, std::sin(heading));
@@ -179,13 +179,13 @@ CameraPlace place_across(const Bounds& bounds, double wind_from_deg) {
   place.heading_deg = heading_across(diagonal_deg, diagonal_deg, wind_from_deg);
   place.pitch_deg = kAcrossPitch_deg;
   if (diagonal_m < kFieldHeights * height_m) {
-    // Hardly wider than high: all of it, from outside.
+    // Hardly wider than high: all of it is shown, from outside.
     place.target_m = {(low.x + high.x) / 2, low.y + 0.5 * height_m, (low.z + high.z) / 2};
     place.distance_m = 0.6 * diagonal_m + 2.0 * height_m;
     return limited(place);
   }
 
-  // Just inside the near edge, over the middle: the streamed blades go on ahead as far as they can.
+  // Just inside the near edge, over the middle: the streamed blades then extend as far as possible.
   const double eye_height_m = kAcrossHeights * height_m;
   place.distance_m = std::min(0.45 * diagonal_m, 0.75 * eye_height_m / std::sin(glm::radians(kAcrossPitch_deg)));
   const double heading = glm::radians(place.heading_deg);
@@ -217,19 +217,19 @@ double distance_to_see(const Bounds& bounds, const CameraPlace& place, double as
 CameraPlace place_around(const Bounds& bounds, double aspect, double wind_from_deg) {
   const glm::dvec3 size_m = bounds.high_m - bounds.low_m;
 
-  // At the broad side: to the south-south-west, or to the west-south-west, as far as the wind allows it.
+  // Toward the broad side: looking south-south-west, or west-south-west, as far as the wind allows it.
   CameraPlace place;
   place.heading_deg = size_m.x >= size_m.z ? heading_across(180.0 + kFromCorner_deg, 180.0, wind_from_deg)
                                            : heading_across(270.0 - kFromCorner_deg, 270.0, wind_from_deg);
   place.target_m = glm::dvec3(bounds.low_m + bounds.high_m) / 2.0;
   if (size_m.y < kFlatHeights * std::hypot(size_m.x, size_m.z)) {
-    // From its edge, so that it goes on beyond the picture's sides; in an upright picture from no farther.
+    // From its edge, so that it extends beyond the picture's sides; in an upright picture from no farther.
     place.pitch_deg = kFlatPitch_deg;
     place.distance_m = kFlatShown * distance_to_see(bounds, place, std::max(aspect, kUsualAspect));
     return limited(place);
   }
 
-  // From as low as a person who stands or sits sees it, against the sky; with the horizon well inside of the picture.
+  // From the height of a standing or sitting person, against the sky; with the horizon well inside the picture.
   const double eye_height_m = std::clamp(kEyeHeights * size_m.y, kSittingEye_m, kStandingEye_m);
   const double up_deg = glm::degrees(std::atan(tangent_up(place.field_of_view_deg, aspect)));
   place.pitch_deg = 0.0;
@@ -243,7 +243,7 @@ CameraPlace place_around(const Bounds& bounds, double aspect, double wind_from_d
 }
 
 CameraPlace place_on_shore(const Shore& shore, double wind_from_deg) {
-  // Across the longer side, from where the evening sun is not behind, as far as the wind allows it.
+  // Across the longer side, not from the side of the evening sun, as far as the wind allows it.
   const bool is_along = shore.half_m().x >= shore.half_m().y;
   glm::dvec2 ahead(is_along ? shore.along() : shore.across());
   if (ahead.x - ahead.y > 0.0) ahead = -ahead;  // toward the south-west

@@ -18,7 +18,7 @@ inline constexpr double kUsualWindFrom_deg = 240.0;
 struct CameraPlace {
   glm::dvec3 target_m{0.0};
   double heading_deg = 0.0;       ///< direction of view: 0 north, 90 east
-  double pitch_deg = 10.0;        ///< of the view below level; below 0 it looks up
+  double pitch_deg = 10.0;        ///< of the view below level; negative: upward
   double distance_m = 5.0;        ///< from the target
   double field_of_view_deg = 40;  ///< from the bottom of the picture to its top, at 16:9; see tangent_up()
 
@@ -29,9 +29,8 @@ struct CameraPlace {
 glm::dvec3 eye_of(const CameraPlace& place);
 
 /// The tangent of half the field of view from bottom to top in a picture of width / height `aspect`. At 16:9 it is that
-/// of `field_of_view_deg`. In every other picture it is such that the product of height and width of what is seen stays
-/// the same: an upright one sees less to the sides and more above and below, and a very broad one is not drawn out at
-/// its ends.
+/// of `field_of_view_deg`. In other pictures the product of visible height and width stays the same: an upright one
+/// shows less at the sides and more above and below, and a very broad one is not distorted at its ends.
 double tangent_up(double field_of_view_deg, double aspect);
 
 /// A camera that the user turns, shifts and moves nearer and farther; it follows these movements smoothly. Pure: time
@@ -44,13 +43,13 @@ class OrbitCamera {
   static constexpr double kMinDistance_m = 0.2;
   static constexpr double kMaxDistance_m = 200.0;
 
-  /// Takes the place at once, and as the one that reset() returns to.
+  /// Moves to the place at once, and makes it the place to which reset() returns.
   void frame(const CameraPlace& place);
   void reset() { wanted_ = home_; }
-  /// Takes another place as the one that reset() returns to: at once if it is there already, but for its heading while
-  /// it turns; otherwise it stays where it is.
+  /// Sets the place to which reset() returns. Moves there at once if it is at the old one, apart from its heading while
+  /// it turns; otherwise does not move.
   void move_home(const CameraPlace& place);
-  /// Takes the place at once; reset() returns to where it did.
+  /// Moves to the place at once; reset() returns to the same place as before.
   void go_to(const CameraPlace& place);
 
   /// The user's drags, as shares of the picture's height; `right` and `down` are the screen's.
@@ -60,7 +59,7 @@ class OrbitCamera {
   /// Turns of the wheel; above 0 is nearer.
   void zoom(double notches);
 
-  /// It is to be at least so far from its target: zooming in does not go on unseen.
+  /// Sets the minimum distance from its target, which limits zooming in.
   void keep_away(double distance_m);
 
   /// Lets it orbit by itself, slowly.
@@ -70,14 +69,14 @@ class OrbitCamera {
   /// Advances by dt_s.
   void advance(double dt_s);
 
-  /// From now on it sees this, whatever its field of view and the picture's shape; nothing: those again.
+  /// From now on uses this frustum, whatever its field of view and the picture's shape; nullopt: uses those again.
   void see_through(const std::optional<Frustum>& frustum) { frustum_ = frustum; }
 
   const CameraPlace& place() const { return place_; }
   glm::dvec3 eye_m() const { return eye_of(place_); }
 
   glm::mat4 view() const;
-  /// What it sees in a picture of width / height `aspect`.
+  /// Its view in a picture of width / height `aspect`.
   Frustum frustum(double aspect) const;
   /// For such a picture; near and far planes fit the distance.
   glm::mat4 projection(double aspect) const;
@@ -90,12 +89,12 @@ class OrbitCamera {
   std::optional<Frustum> frustum_;
 };
 
-/// Returns the heading nearest to `preferred_deg` that looks across the wind, so that what leans leans to the picture's
+/// Returns the heading nearest to `preferred_deg` that looks across the wind, so that things lean to the picture's
 /// side: |sin(heading - wind_from_deg)| >= 0.86. Of the two sides of the wind it takes the one that is nearer to
 /// `broadside_deg`, the heading that sees a thing at its broadest; it is never more than 60 degrees from that.
 double heading_across(double preferred_deg, double broadside_deg, double wind_from_deg);
 
-/// A low place to look at the content of `bounds` from, across the wind and toward the evening sun's side: across a
+/// A low place from which to view the content of `bounds`, across the wind and toward the evening sun's side: across a
 /// field from just inside its edge, and at something small from outside.
 CameraPlace place_across(const Bounds& bounds, double wind_from_deg = kUsualWindFrom_deg);
 
@@ -103,13 +102,13 @@ CameraPlace place_across(const Bounds& bounds, double wind_from_deg = kUsualWind
 /// width / height `aspect`.
 double distance_to_see(const Bounds& bounds, const CameraPlace& place, double aspect);
 
-/// A low place outside of `bounds`, across the wind, at its broad side and toward the evening sun's side. All of what
-/// stands is in a picture of width / height `aspect`, before the sky; what is flat, as water, fills the picture from
-/// side to side.
+/// A low place outside of `bounds`, across the wind, at its broad side and toward the evening sun's side. Upright
+/// things are completely in a picture of width / height `aspect`, before the sky; flat ones, such as water, fill its
+/// width.
 CameraPlace place_around(const Bounds& bounds, double aspect, double wind_from_deg = kUsualWindFrom_deg);
 
-/// A low place at the near shore of a pond, from where the water goes from the picture's lower edge to the far shore,
-/// and the horizon is in the picture: across the wind, toward the evening sun's side.
+/// A low place at the near shore of a pond, from which the water extends from the picture's lower edge to the far
+/// shore, and the horizon is visible: across the wind, toward the evening sun's side.
 CameraPlace place_on_shore(const Shore& shore, double wind_from_deg = kUsualWindFrom_deg);
 
 /// A place so close to the broad side of something that bulges out of the ground that it fills the picture's lower part

@@ -13,7 +13,7 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kArmSpacings = 2.5F;  // how far beside a strand its neighbours are looked for
-constexpr float kMinArm = 0.5F;       // of twice that: at the coat's edge there may be none
+constexpr float kMinArm = 0.5F;       // of twice that: at the coat's edge there can be none
 
 glm::vec3 tip_of(const pose::JointPositions& joints, std::size_t strand) {
   const pose::JointPosition tip = joints.joint(strand, joints.links_per_strand() - 1);
@@ -32,7 +32,7 @@ class RootCells {
 
   glm::vec3 root_m(std::size_t i) const { return {coat_->root_x_m[i], coat_->root_y_m[i], coat_->root_z_m[i]}; }
 
-  /// Within half a cell; `otherwise` where there is none in the cells around.
+  /// Searches within half a cell; returns `otherwise` if there is none in the cells around.
   std::uint32_t nearest(const glm::vec3& place_m, std::uint32_t otherwise) const {
     const glm::vec3 low = place_m / cell_m_ - 0.5F;
     std::uint32_t found = otherwise;

@@ -7,9 +7,9 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-constexpr float kMargin = 0.08F;  // of the box, for what the wind moves out of it
+constexpr float kMargin = 0.08F;  // of the box, for movement by the wind
 constexpr float kEyeDistance_m = 1000.0F;
-constexpr float kSunTangent = 0.012F;  // of the angle over which the sun's light is spread: a little more than the disc
+constexpr float kSunTangent = 0.012F;  // tangent of the angle of the sun's light: a little more than the disc
 
 }  // namespace
 
@@ -37,7 +37,7 @@ View shadow_view(const Bounds& casters, const glm::vec3& to_sun, int texels) {
   view.right = {to_light[0][0], to_light[1][0], to_light[2][0], 0.0F};
   view.up = {to_light[0][1], to_light[1][1], to_light[2][1], 0.0F};
   view.forward = {-to_light[0][2], -to_light[1][2], -to_light[2][2], 0.0F};
-  // A penumbra grows by this share of the map's sides where the shadow falls one whole depth behind what casts it.
+  // A penumbra grows to this share of the map's sides if the shadow falls one whole depth behind its object.
   view.shadow = {0.0F, kSunTangent * deep_m / across_m, kSunTangent * deep_m / upright_m, 2.0F * deep_m};
   return view;
 }

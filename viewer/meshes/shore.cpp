@@ -13,14 +13,14 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr auto kTurn_rad = static_cast<float>(2.0 * kPi);
-constexpr float kSquareness = 2.4F;  // of the outline: 2 is an ellipse, more goes farther into the corners
+constexpr float kSquareness = 2.4F;  // exponent of the outline: 2 is an ellipse, more reaches farther into the corners
 constexpr float kBank_m = 0.42F;
 constexpr float kFullHalf_m = 3.5F;
-constexpr float kShelf = 0.10F;  // how fast the bed goes down at first
+constexpr float kShelf = 0.10F;  // slope of the bed at the shore
 constexpr float kDeepest_m = 0.8F;
-constexpr float kDropOff_m = 1.6F;  // where the bed has gone down by half of that
-constexpr float kCalmed = 0.15F;    // of a wave's height at the shore
-constexpr float kCalming_m = 1.2F;  // from there on it is whole
+constexpr float kDropOff_m = 1.6F;  // distance at which the bed has half of its depth
+constexpr float kCalmed = 0.15F;    // a wave's height at the shore, as a share
+constexpr float kCalming_m = 1.2F;  // distance from which waves have their full height
 constexpr float kUnderTurf_m = 0.012F;
 constexpr std::size_t kBearings = 224;
 constexpr std::array kEdges{-0.25F, 0.0F, 0.12F, 0.28F, 0.48F, 0.72F, 1.0F, 1.35F};
@@ -30,7 +30,7 @@ float smooth_step(float t) {
   return x * x * (3.0F - 2.0F * x);
 }
 
-/// How far the outline's square goes at a bearing, where an ellipse of the same sides goes 1.
+/// The extent of the outline's square at a bearing, relative to an ellipse of the same sides.
 glm::vec2 on_square(float bearing_rad) {
   const glm::vec2 way(std::cos(bearing_rad), std::sin(bearing_rad));
   const float norm = std::pow(std::abs(way.x), kSquareness) + std::pow(std::abs(way.y), kSquareness);

@@ -15,28 +15,28 @@ namespace yuragi::viewer::meshes {
 /// ground, and a bed that goes down. The same surface always has the same shore. Pure.
 class Shore {
  public:
-  /// So far below the ground is the water.
+  /// Depth of the water's surface below the ground.
   static constexpr float kSunk_m = 0.12F;
 
-  /// No shore, all of the ground is land: for a surface of less than two columns or rows.
+  /// No shore, everything is land: for a surface of less than two columns or rows.
   Shore() = default;
   explicit Shore(const pose::SurfaceSkeleton& surface);
 
   bool is_pond() const { return half_m_.x > 0.0F; }
 
-  /// How far out of the water a place (x, z) is, metres, about: less than 0 in the water.
+  /// Approximate distance of a place (x, z) from the water, metres; negative in the water.
   float out_m(const glm::vec2& at_m) const;
-  /// How wide the bank is there: out_m() of the place where it comes up to the ground.
+  /// The width of the bank there: out_m() of its upper edge.
   float bank_m(const glm::vec2& at_m) const;
   /// The height of the bed or of the bank, above the ground.
   float bed_m(const glm::vec2& at_m) const;
-  /// How high waves are there, as a part of what they are where the water is deep.
+  /// The height of waves there, relative to deep water.
   float wave_share(const glm::vec2& at_m) const;
 
-  /// The place at a bearing (radians, along the surface's own sides), so far out of the water.
+  /// The place at a bearing (radians, relative to the surface's sides), at this distance from the water.
   glm::vec2 at(float bearing_rad, float out_m) const;
 
-  /// How large everything at the shore is: 1 at a pond of 7 metres, less at a smaller one.
+  /// The size of everything at the shore: 1 at a pond of 7 metres, less at a smaller one.
   float scale() const { return scale_; }
   const glm::vec2& middle_m() const { return middle_m_; }
   /// Unit vectors along the rows and the columns, and half of the rectangle's sides along them.
@@ -45,7 +45,7 @@ class Shore {
   const glm::vec2& half_m() const { return half_m_; }
 
  private:
-  /// The shore at a bearing, as a part of the rectangle's side.
+  /// The shore's distance at a bearing, as a part of the rectangle's side.
   float reach(float bearing_rad) const;
   float bank_at(float bearing_rad) const;
   float bearing_of(const glm::vec2& off_m) const;
@@ -60,10 +60,10 @@ class Shore {
 struct BankVertex {
   glm::vec3 place_m{0.0F};
   glm::vec3 normal{0.0F};
-  float edge = 0.0F;  ///< 0 at the water, 1 where it comes up to the ground
+  float edge = 0.0F;  ///< 0 at the water, 1 at the upper edge of the bank
 };
 
-/// The bank, from a little below the water to a little under the ground around it, and the ground that is open over it
+/// The bank, from a little below the water to a little under the ground around it, and the hole in the ground over it
 /// and the water: its triangles come first. Empty without a pond.
 struct BankMesh {
   std::vector<BankVertex> vertices;
@@ -79,14 +79,14 @@ struct Reed {
   float heading_rad = 0.0F;  ///< where it leans to
   float lean_rad = 0.0F;
   float width_m = 0.0F;
-  float chance = 0.0F;  ///< 0 to 1: what it looks like
+  float chance = 0.0F;  ///< random, 0 to 1: its look
 };
 
-/// In tufts that stand together along parts of the shore, and leave others free. Empty without a pond.
+/// In tufts that grow in groups along parts of the shore. Empty without a pond.
 std::vector<Reed> reeds_of(const Shore& shore);
 
-/// The slope of a pond's waves at each point of its grid, where they have the height `y_m`: along x, along z, and the
-/// sum of both squares; three numbers a point.
+/// The slope of a pond's waves at each point of its grid, given the heights `y_m`: along x, along z, and the sum of
+/// both squares; three numbers per point.
 class WaveSlopes {
  public:
   WaveSlopes(const pose::SurfaceSkeleton& surface, const Shore& shore);
@@ -98,7 +98,7 @@ class WaveSlopes {
 
  private:
   std::size_t columns_, rows_;
-  glm::vec2 along_per_m_, across_per_m_;  ///< from the difference of two neighbours but one to a slope
+  glm::vec2 along_per_m_, across_per_m_;  ///< factors from the difference of the two neighbours to a slope
   std::vector<float> share_, rest_y_m_;
   std::vector<float> heights_m_, slopes_;
 };

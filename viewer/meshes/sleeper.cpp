@@ -20,8 +20,8 @@ constexpr float kLongForAnimal = 1.8F;
 constexpr std::size_t kLimbSides = 14;
 constexpr std::size_t kRingsBetween = 5;
 
-/// Of the hairs on limbs: how many there are on a square as wide as the body's half width; how long they are, in radii
-/// of the limb and at least, and how wide, in lengths; and how far they stand up.
+/// Hairs on limbs: their number on a square as wide as the body's half width; their length, in radii of the limb, and
+/// its minimum; their width, in lengths; and how far they stand up.
 constexpr float kHairsPerSquare = 9000.0F;
 constexpr float kLongHair = 0.34F;
 constexpr float kMinHair = 0.045F;  // in half widths of the body
@@ -55,8 +55,8 @@ class LimbBuilder {
     right_ = glm::cross(ahead, glm::vec3(0.0F, 1.0F, 0.0F));
   }
 
-  /// A round limb along a smooth line through its stations, closed at both ends; `flat`: how thick it is upright or, of
-  /// one that stands, ahead, over how wide. Stations with a radius of 0 are its ends.
+  /// Adds a round limb along a smooth line through its stations, closed at both ends; `flat`: its thickness (upright
+  /// or, for a standing limb, forward) relative to its width. Stations with a radius of 0 are its ends.
   void add(std::span<const Station> stations, float flat = 1.0F) {
     const auto base = static_cast<std::uint32_t>(limbs_->vertices.size());
     const std::size_t rings = (stations.size() - 1) * kRingsBetween + 1;
@@ -111,7 +111,7 @@ class LimbBuilder {
   glm::vec3 origin_m_, ahead_{0.0F}, right_{0.0F};
 };
 
-/// Level, of length 1: against where the hairs lie on average. 0 where they stand up.
+/// Level, of length 1: opposite to the hairs' mean direction. 0 if they stand up.
 glm::vec3 ahead_of(const pose::StrandSkeleton& coat) {
   glm::vec3 lie(0.0F);
   for (std::size_t i = 0; i < coat.strand_count; ++i) lie += glm::vec3(coat.rest_x[i], 0.0F, coat.rest_z[i]);
@@ -119,15 +119,15 @@ glm::vec3 ahead_of(const pose::StrandSkeleton& coat) {
   return length > 0.0F ? -lie / length : glm::vec3(0.0F);
 }
 
-/// With steps of so many, and back to the beginning at the end, one comes to each of `count` things once, and to those
-/// of any first part evenly spread over all: a number without a common divisor, near the golden ratio's part of them.
+/// A step that visits each of `count` things once and returns to the first, such that any first part of them is evenly
+/// spread over all: a number without a common divisor, near the golden ratio's part of them.
 std::size_t spreading_step(std::size_t count) {
   auto step = static_cast<std::size_t>(static_cast<double>(count) / std::numbers::phi);
   while (std::gcd(step, count) != 1) ++step;
   return step;
 }
 
-/// Adds hairs all over the skin, that lie along its limbs; `unit_m`: half the body's width.
+/// Adds hairs over the whole skin, along its limbs; `unit_m`: half the body's width.
 void add_hairs(Limbs& limbs, float unit_m) {
   limbs.skin_count = limbs.indices.size();
   const math::RandomStream chance(0, math::stream_id("viewer limb hairs"));

@@ -19,10 +19,10 @@ struct SolidVertex {
 /// A rigid mesh of poles, rods, knobs and rims, built piece by piece. Pure.
 class SolidMesh {
  public:
-  /// The pieces that follow have so much of the grain of wood, along their longer side: 0 to 1.
+  /// Pieces added from now on have this amount of wood grain along their longer side: 0 to 1.
   void set_grain(float share) { grain_ = share; }
 
-  /// From `from` to `to`, round, tapering, open at its ends.
+  /// A round, tapering tube from `from` to `to`, open at its ends.
   void add_tube(const glm::vec3& from, const glm::vec3& to, float from_radius_m, float to_radius_m,
                 const glm::vec3& tint);
   void add_ball(const glm::vec3& middle, float radius_m, const glm::vec3& tint);
@@ -36,10 +36,10 @@ class SolidMesh {
   void add_quad(const std::array<glm::vec3, 4>& corners, const glm::vec3& tint);
 
   const std::vector<SolidVertex>& vertices() const { return vertices_; }
-  /// Of all pieces but the rings.
+  /// Of all pieces except the rings.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
   const std::vector<std::uint32_t>& rings() const { return rings_; }
-  /// The radius of the thickest ring's wire; 0 where there is no ring.
+  /// The radius of the thickest ring's wire; 0 if there is no ring.
   float wire_radius_m() const { return wire_radius_m_; }
 
  private:

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kJump_s = 0.5;
 constexpr double kShortest_s = 0.7, kLongest_s = 2.3;
-/// Gas above a fire rises by so much of sqrt(g h) (B. McCaffrey 1979, "Purely buoyant diffusion flames": 1.9 sqrt(z)
-/// m/s up to 2.2 m/s and more for small fires), and slows down within so many seconds.
+/// Gas above a fire rises at this part of sqrt(g h) (B. McCaffrey 1979, "Purely buoyant diffusion flames": 1.9 sqrt(z)
+/// m/s up to 2.2 m/s and more for small fires), and slows down within this many seconds.
 constexpr double kRise = 0.75;
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSlowing_s = 1.1;
@@ -31,7 +31,7 @@ double chance(std::size_t place, double number, std::uint64_t which) {
 void Sparks::move_to(double time_s, const glm::vec2& wind_m_s, const FlameVolume& flame) {
   const glm::dvec2 wind(wind_m_s);
   const double passed_s = time_s - time_s_;
-  // Another wind at the same time is of another stream, or a test.
+  // Another wind at the same time belongs to another stream, or a test.
   const bool is_other = passed_s == 0.0 && wind_m_s != wind_m_s_;
   const bool has_jumped = !has_begun_ || is_other || std::abs(passed_s) > kJump_s;
   if (!has_jumped) way_m_ += passed_s * wind;
@@ -68,7 +68,7 @@ void Sparks::move_to(double time_s, const glm::vec2& wind_m_s, const FlameVolume
       return flight.from_m +
              glm::vec3(drift_m.x + aside_m * std::sin(turn_rad), up_m, drift_m.y + aside_m * std::cos(0.8 * turn_rad));
     };
-    // It takes the wind on within its first half second.
+    // A spark reaches the wind's speed within its first half second.
     const double held = kGoesWithWind * (1.0 - std::exp(-2.0 * age_s));
     const glm::dvec2 drift_m = held * (way_m_ - flight.way_m);
     spark.place_m = place_at(age_s, drift_m);

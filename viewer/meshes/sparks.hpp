@@ -14,26 +14,26 @@ namespace yuragi::viewer::meshes {
 struct Spark {
   glm::vec3 place_m{0.0F};
   float glow = 0.0F;         ///< 0 to 1
-  glm::vec3 before_m{0.0F};  ///< where it was kBlur_s before
+  glm::vec3 before_m{0.0F};  ///< its position kBlur_s before
   float radius_m = 0.0F;
 };
 
-/// The sparks that leave a flame: each rises with the gas, drifts with the wind, and goes out. When one is born, where,
-/// and how it moves depends on the time alone; only the way of the wind since then, and where the flame stood, are
-/// kept. Allocates nothing. Pure.
+/// The sparks that leave a flame: each rises with the gas, drifts with the wind, and goes out. Its birth and its
+/// movement depend on the time alone; only the wind's path since then, and the flame's position, are stored. Allocates
+/// nothing. Pure.
 class Sparks {
  public:
   static constexpr std::size_t kMost = 40;
   static constexpr double kBlur_s = 0.012;
 
   /// The wind goes toward east and south. After a jump in time, or with another wind at the
-  /// same time, it counts as if this wind had always been.
+  /// same time, this wind counts as if it had always blown.
   void move_to(double time_s, const glm::vec2& wind_m_s, const FlameVolume& flame);
   std::span<const Spark> all() const { return sparks_; }
 
  private:
   struct Flight {
-    double number = -1.0;  ///< of all that its place has sent out
+    double number = -1.0;  ///< count of all sparks of its place
     glm::vec3 from_m{0.0F};
     glm::dvec2 way_m{0.0};  ///< the wind's, when it was born
   };

@@ -19,7 +19,7 @@ constexpr std::size_t kStrandsPerTile = 200;  // on average
 constexpr float kReach = 1.1F;                // of a blade's length, around its root
 constexpr std::array<std::size_t, 9> kRings{12, 10, 8, 6, 5, 4, 3, 2, 1};
 
-/// Of the strands, in the order of their tiles and within a tile at random, each with its tile.
+/// The strands, in the order of their tiles and random within a tile, each with its tile.
 struct Order {
   std::size_t strand, tile;
   double chance;
@@ -126,7 +126,7 @@ void StrandTiles::choose(const View& view) {
     const float distance_m = glm::distance(eye_m, glm::clamp(eye_m, tile.bounds.low_m, tile.bounds.high_m));
     if (distance_m < detail_.reach_m) in_view_.emplace_back(distance_m, i);
   }
-  // Near ones first: what they hide is then not painted.
+  // Near ones first, so that hidden parts are not painted.
   std::ranges::sort(in_view_);
   for (const auto& [distance_m, i] : in_view_) {
     const Tile& tile = tiles_[i];

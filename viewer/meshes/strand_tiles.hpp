@@ -20,21 +20,21 @@ namespace yuragi::viewer::meshes {
 /// (blade.part.glsl); test: within a few hundredths of the forward kinematics.
 glm::vec3 arc_point(const glm::vec2& foot, const glm::vec2& turned, float t);
 
-/// A streamed blade of grass at rest, as the shader reads it.
+/// A streamed blade of grass at rest, in the shader's layout.
 struct TiledBlade {
   glm::vec3 root_m{0.0F};
   float length_m = 0.0F;
-  glm::vec2 foot_rad{0.0F};    ///< how its foot leans, as of an arc
+  glm::vec2 foot_rad{0.0F};    ///< lean of its foot, if it is an arc
   glm::vec2 turned_rad{0.0F};  ///< how far it is turned up to its tip; its bend is added
   float width_m = 0.0F;
   float facing_rad = 0.0F;  ///< bearing of its flat side
-  float chance = 0.0F;      ///< 0 to 1: its tint, and what grows on it
+  float chance = 0.0F;      ///< random, 0 to 1: its tint, and what grows on it
   float rank = 0.0F;        ///< 0 to 1: see Thinning
 };
 
 /// Streamed strands in square tiles of some hundred, each tile's in a random order, which is that of their ranks: so
-/// what is not in view is left out tile by tile, and of a tile only its first blocks of 16 strands are moved and drawn.
-/// Pure; does not allocate after the first few pictures.
+/// invisible tiles are omitted as a whole, and only the first blocks of 16 strands of a tile are moved and drawn. Pure;
+/// does not allocate after the first few pictures.
 class StrandTiles {
  public:
   /// A tile's first strands.
@@ -43,7 +43,7 @@ class StrandTiles {
     std::size_t strands = 0;
   };
   struct Level {
-    std::size_t rings = 1;  ///< of vertices above the root
+    std::size_t rings = 1;  ///< rings of vertices above the root
     std::vector<Drawn> tiles;
   };
 
@@ -56,7 +56,7 @@ class StrandTiles {
   void set_thinning(const Thinning& thinning) { thinning_ = thinning; }
   /// Chooses what is drawn.
   void choose(const View& view);
-  /// The blocks of blades() that hold it, those of a tile one behind the other.
+  /// The blocks of blades() that hold it, grouped by tile.
   std::span<const std::uint32_t> blocks() const { return blocks_; }
   std::span<const Level> levels() const { return levels_; }
 
@@ -77,7 +77,7 @@ class StrandTiles {
   std::vector<TiledBlade> blades_;
   std::vector<Tile> tiles_;
   std::size_t most_strands_ = 0;
-  std::vector<std::pair<float, std::size_t>> in_view_;  // how far away, and which tile
+  std::vector<std::pair<float, std::size_t>> in_view_;  // distance and index of the tile
   std::vector<std::uint32_t> blocks_;
   std::vector<glm::vec2> bends_;
   std::vector<Level> levels_;

@@ -12,11 +12,11 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-/// The R2 sequence: the more of it is taken, the more densely it fills the square, evenly at any time (M. Roberts 2018,
-/// "The unreasonable effectiveness of quasirandom sequences").
+/// The R2 sequence: any first part of it fills the square evenly (M. Roberts 2018, "The unreasonable effectiveness of
+/// quasirandom sequences").
 constexpr double kR2First = 0.7548776662466927;
 constexpr double kR2Second = 0.5698402909980532;
-constexpr double kStray = 0.7;  // of the spacing of as many blades as there are
+constexpr double kStray = 0.7;  // relative to the blades' spacing
 
 double part_of(double value) {
   return value - std::floor(value);

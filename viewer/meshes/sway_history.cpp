@@ -12,7 +12,7 @@ namespace {
 constexpr double kSpacing_s = 1.0 / 30.0;
 constexpr double kMaxGap_s = 1.0;
 constexpr double kMeanOver_s = 10.0;
-constexpr float kSlowest_m_s = 1.0F;  // a weaker wind carries nothing that is seen
+constexpr float kSlowest_m_s = 1.0F;  // a weaker wind has no visible effect
 
 }  // namespace
 

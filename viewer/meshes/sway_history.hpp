@@ -7,23 +7,23 @@
 
 namespace yuragi::viewer::meshes {
 
-/// How far a tree was blown in the last seconds, for its copies far away: a gust reaches one after the other, carried
-/// by the mean wind (G. I. Taylor 1938, "The spectrum of turbulence": gusts change little on their way). An estimate:
-/// the stream has the pose of one tree, and the wind at one place. Allocates when it is made, never afterwards.
+/// The bend of a tree in the last seconds, for its copies far away: a gust reaches them in turn, carried by the mean
+/// wind (G. I. Taylor 1938, "The spectrum of turbulence": gusts change little on their way). An estimate: the stream
+/// has the pose of one tree, and the wind at one place. Allocates when it is made, never afterwards.
 class SwayHistory {
  public:
-  static constexpr double kLongest_s = 8.0;  ///< no copy is later than this
+  static constexpr double kLongest_s = 8.0;  ///< the maximum delay of a copy
 
   SwayHistory();
 
-  /// Vectors toward east and south. Where time goes back or jumps ahead, it begins anew.
+  /// Vectors toward east and south. If time goes back or jumps ahead, it starts again.
   void add(double time_s, const glm::vec2& sway_m, const glm::vec2& wind_m_s);
 
   /// How far downwind a place is, metres, by the mean wind.
   float downwind_m(const glm::vec2& place_m) const;
   /// How long gusts take for that, at most kLongest_s.
   double delay_s(float downwind_m) const;
-  /// How far the tree was blown so long ago; 0 before anything is added.
+  /// The bend of the tree this long ago; 0 before the first value.
   glm::vec2 sway_m(double delay_s) const;
 
  private:

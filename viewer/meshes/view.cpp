@@ -8,7 +8,7 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-constexpr double kMistHeight_m = 110.0;  // mist is e times as thin there (common.glsl)
+constexpr double kMistHeight_m = 110.0;  // mist is thinner by a factor of e there (common.glsl)
 
 /// The mean of exp(-height / kMistHeight_m) from the ground to a height.
 float mist_below(double height_m) {
@@ -23,7 +23,7 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   const Frustum frustum = camera.frustum(static_cast<double>(aspect));
   const auto tan_up = static_cast<float>(0.5 * (frustum.top - frustum.bottom));
   const auto tan_right = static_cast<float>(0.5 * (frustum.right - frustum.left));
-  // Of the picture's middle from where the camera looks.
+  // The picture's middle, relative to the camera's axis.
   const auto middle_up = static_cast<float>(0.5 * (frustum.top + frustum.bottom));
   const auto middle_right = static_cast<float>(0.5 * (frustum.right + frustum.left));
   const glm::mat4 to_camera = camera.view();
@@ -47,7 +47,7 @@ std::array<glm::vec3, 4> corner_rays(const View& view, float margin) {
 }
 
 Arc bearings_of(const View& view, float margin) {
-  constexpr float kMaxSteep = 0.2F;  // of a corner's direction: its part along the middle's bearing
+  constexpr float kMaxSteep = 0.2F;  // minimum part of a corner's direction along the middle's bearing
   const glm::vec3 forward(view.forward);
   const float level = std::hypot(forward.x, forward.z);
   if (level < kMaxSteep * glm::length(forward)) return {};

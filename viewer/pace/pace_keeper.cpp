@@ -8,14 +8,14 @@ namespace {
 
 constexpr double kJudgeSoon_s = 1.0;  // while settling, if pictures take far too long
 constexpr double kFarTooLong = 1.5;
-constexpr std::size_t kFewPictures = 5;  // are judged only when they are all that there is for kJudge_s
-constexpr double kLongest_s = 2.0;       // a picture that took longer was held up by something else
-constexpr double kTooLong = 1.05;        // of the time that there is
-constexpr double kExpected = 0.7;        // of the work before, with the next step: until it is measured
-constexpr double kMaxSaved = 0.3;        // what a measurement is believed
-constexpr double kSavesNothing = 0.95;   // of the work before, or more
-constexpr double kWarming_s = 1.0;       // what drivers prepare at first use makes pictures slow that are not so later
-constexpr double kBladesPerSecond = 0.08;  // of all; of the coarseness, as much
+constexpr std::size_t kFewPictures = 5;    // this few are judged only if there are no more in kJudge_s
+constexpr double kLongest_s = 2.0;         // a picture that took longer was delayed by something else
+constexpr double kTooLong = 1.05;          // of the available time
+constexpr double kExpected = 0.7;          // work of the next step relative to the one before, until it is measured
+constexpr double kMaxSaved = 0.3;          // limits of a credible measurement
+constexpr double kSavesNothing = 0.95;     // of the work before, or more: no saving
+constexpr double kWarming_s = 1.0;         // drivers prepare shaders at first use, which makes the first pictures slow
+constexpr double kBladesPerSecond = 0.08;  // of all blades; the coarseness changes at the same rate
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void Keeper::set_ladder(const Ladder& ladder) {
   if (ladder == ladder_) return;
   const Step before = ladder_[step_];
   ladder_ = ladder;
-  // The same picture, or the first one that has no more; in the same time, where that can be.
+  // The same step, or the first one with no more detail; with the same rate if possible.
   step_ = ladder_.slowest_of(before.quality);
   while (step_ + 1 < ladder_.size() && ladder_[step_].quality == before.quality &&
          ladder_[step_].part.side > before.part.side)
@@ -56,7 +56,7 @@ void Keeper::advance(double passed_s, std::optional<double> work_s) {
   if (is_held()) {
     count_ = 0;
     judged_over_s_ = 0.0;
-  } else if (warming_s_ == 0.0 && drawn_ == step().part) {  // on the way there a picture is more work
+  } else if (warming_s_ == 0.0 && drawn_ == step().part) {  // during the transition a picture is more work
     judged_over_s_ += passed_s;
     if (work_s && count_ < works_s_.size()) works_s_[count_++] = std::clamp(*work_s, 0.0, kLongest_s);
   }
@@ -93,7 +93,7 @@ void Keeper::judge() {
   if (spare_s_ >= kSpare_s && may_change()) go_to(step_ - 1);
 }
 
-/// What the step to here has saved, or cost. Of several steps at once each has done as much.
+/// Learns what the last step has saved, or cost. Several steps at once get equal parts.
 void Keeper::learn() {
   if (median_s_ <= kTooLong * picture_s()) worthwhile_step_ = step_;
   if (!change_) return;
@@ -108,8 +108,8 @@ void Keeper::learn() {
   change_.reset();
 }
 
-/// The first step in which pictures are expected in time; where there is none, the first that is as little late as can
-/// be. Steps by which nothing was saved are given back.
+/// The first step that is expected to be in time; if there is none, the first that is least late. Steps that saved
+/// nothing are undone.
 std::size_t Keeper::least_late() const {
   const auto late = [&](std::size_t step) { return expected_s(step) / ladder_.picture_s(step); };
   std::size_t best = std::min(worthwhile_step_, step_);
@@ -130,8 +130,8 @@ void Keeper::go_to(std::size_t step) {
   if (settling_s_ == 0.0) since_changes_s_ = {0.0, since_changes_s_[0]};
 }
 
-/// How long a picture would take in another step. Where only the time for it differs it takes as long, but should leave
-/// room.
+/// The expected duration of a picture in another step. If only the available time differs, the duration is the same,
+/// but some of it should stay free.
 double Keeper::expected_s(std::size_t step) const {
   double expected_s = median_s_;
   for (std::size_t i = step_ + 1; i <= step; ++i) {
@@ -141,7 +141,7 @@ double Keeper::expected_s(std::size_t step) const {
   return expected_s;
 }
 
-/// Does this step differ in the picture from the one before it?
+/// Returns true if this step changes the picture, compared with the one before.
 bool Keeper::is_picture_step(std::size_t step) const {
   return step > 0 && ladder_[step].refreshes == ladder_[step - 1].refreshes;
 }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kClockFollowing_s = 5.0;  // the time constant with which the daemon's clock is followed
 constexpr double kFastestFollowing = 0.1;  // of the time that passes
-constexpr double kClockWasSet_s = 5.0;     // farther off than any frame's delay
+constexpr double kClockWasSet_s = 5.0;     // more than any frame's delay
 
 std::optional<look::Camera> copy_of(const look::Camera* camera) {
   return camera != nullptr ? std::optional(*camera) : std::nullopt;

@@ -10,10 +10,10 @@ namespace yuragi::viewer::picture {
 namespace {
 
 constexpr double kUsualDistance_m = 10.0;
-constexpr double kAway_m = 0.5;  // of an eye from an obstacle
+constexpr double kAway_m = 0.5;  // distance of an eye from an obstacle
 constexpr int kHeadings = 72;
 
-/// The distance at which all of the scene is in the picture from every side.
+/// The distance at which the whole scene is in the picture from every side.
 double distance_from_all_sides_m(const meshes::Bounds& scene, meshes::CameraPlace place, double aspect) {
   double distance_m = 0.0;
   for (int heading = 0; heading < kHeadings; ++heading) {
@@ -77,7 +77,7 @@ meshes::CameraPlace place_of(const look::Camera& camera, const std::optional<mes
   const double heading = glm::radians(place.heading_deg);
   place.target_m += glm::dvec3(std::cos(heading), 0.0, std::sin(heading)) * (camera.track_m * wave);
   if (camera.pan_deg != 0.0) {
-    // The target goes around the eye.
+    // The target moves around the eye.
     const glm::dvec3 eye_m = eye_of(place);
     place.heading_deg += camera.pan_deg * wave;
     place.target_m += eye_m - eye_of(place);

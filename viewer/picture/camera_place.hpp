@@ -10,12 +10,12 @@
 namespace yuragi::viewer::picture {
 
 /// Where a camera of the daemon's is at a moment (seconds since 1970, UTC): its place, and its slow moves, as
-/// engine/wire/pose.fbs defines them. `scene`: the box around what it looks at; nothing: the middle of the world.
-/// `aspect`: the picture's width / height. Pure, and smooth in time.
+/// engine/wire/pose.fbs defines them. `scene`: the box around its target; nullopt: the middle of the world. `aspect`:
+/// the picture's width / height. Pure, and smooth in time.
 ///
-/// A camera with a wind_angle looks so far to the right of `view_wind_from_deg` (its own heading if that is not known).
-/// Its distance does not depend on its heading, so that it enters none of the `obstacles` while it turns about its
-/// target: a distance that is too short is made longer (clear_distance_m()).
+/// A camera with a wind_angle looks by that angle to the right of `view_wind_from_deg` (its own heading if that is not
+/// known). Its distance does not depend on its heading, so that it enters none of the `obstacles` while it turns about
+/// its target: a distance that is too short is made longer (clear_distance_m()).
 meshes::CameraPlace place_of(const look::Camera& camera, const std::optional<meshes::Bounds>& scene, double aspect,
                              double utc_s, std::optional<double> view_wind_from_deg = std::nullopt,
                              std::span<const meshes::Bounds> obstacles = {});

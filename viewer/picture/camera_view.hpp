@@ -5,7 +5,7 @@
 
 namespace yuragi::viewer::picture {
 
-/// Where the camera is, of the text "HEADING,PITCH,DISTANCE".
+/// A camera's position, from the text "HEADING,PITCH,DISTANCE".
 struct CameraView {
   double heading_deg = 0.0;
   double pitch_deg = 0.0;

@@ -13,25 +13,25 @@
 
 namespace yuragi::viewer::picture {
 
-/// A current context that needs no display. Throws ViewerExit (EX_UNAVAILABLE) where there is none to be had.
+/// Returns a current context that needs no display. Throws ViewerExit (EX_UNAVAILABLE) if there is none.
 std::unique_ptr<gl::HeadlessContext> make_headless_context();
 
 /// Draws by OpenGL into its target: all of each picture, or less if asked to.
 class GlRenderer final : public Renderer {
  public:
-  /// Needs `context`, or, where this is null, a current one that outlives it: a window's.
+  /// Needs `context`, or, if this is null, a current one that outlives it: a window's.
   GlRenderer(std::unique_ptr<gl::HeadlessContext> context, int width_px, int height_px, int samples);
 
   /// The size of the pictures from the next one on.
   void resize(int width_px, int height_px);
   /// How much of the next pictures is drawn; all at first.
   void set_drawn(const pace::DrawnPart& drawn) { drawn_ = drawn; }
-  /// The quality where the look leaves it to the viewer; high at first.
+  /// Sets the quality for looks that leave it to the viewer; initially high.
   void set_own_quality(look::Quality quality) { own_quality_ = quality; }
-  /// The one that was last set: kAuto where it is left to the viewer.
+  /// The quality that was last set: kAuto if the viewer chooses.
   look::Quality wanted_quality() const { return wanted_quality_; }
   look::Quality quality() const { return quality_; }
-  /// Every camera sees this, whatever its field of view.
+  /// Sets the frustum of every camera, regardless of its field of view.
   void see_through(const meshes::Frustum& frustum) { camera_.see_through(frustum); }
 
   looks::Stage& stage() { return stage_; }

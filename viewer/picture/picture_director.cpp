@@ -9,7 +9,7 @@ namespace yuragi::viewer::picture {
 
 Director::Director(const ViewerOptions& options, Renderer& renderer, std::string source)
     : options_(options), renderer_(renderer), source_(std::move(source)), view_(read_camera_view(options.camera)) {
-  // What the command line asks for comes before the hour.
+  // The command line takes precedence over the hour.
   if (is_camera_named()) {
     cameras_.begin_with(options.camera);
   } else if (view_ || !options.scene.empty() || options.is_turning) {
@@ -32,7 +32,7 @@ void Director::frame() {
   camera_.frame(first_place());
 }
 
-/// A window of another shape: the first place is another, and who is there stays there.
+/// The window's shape has changed: the first place changes; the camera moves only if it was there.
 void Director::follow_aspect() {
   if (renderer_.aspect() != framed_aspect_) camera_.move_home(first_place());
 }

@@ -12,50 +12,51 @@
 
 namespace yuragi::viewer::picture {
 
-/// What the pictures of a stream show, by the sender's values and the command line's: scenes, light, camera.
-/// Pure but for the renderer: time is a parameter. Thread-safe: no.
+/// Decides what the pictures of a stream show, by the sender's values and the command line's: scenes, light, camera.
+/// Pure except for the renderer: time is a parameter. Thread-safe: no.
 class Director {
  public:
-  /// `source`: who sends the stream, for people. Both others must outlive this.
+  /// `source`: the stream's sender, for people. Both others must outlive this.
   Director(const ViewerOptions& options, Renderer& renderer, std::string source);
 
-  /// Where the sender's wind usually comes from, before its scenes: the first view looks across it.
+  /// The sender's usual wind direction; set before its scenes, because the first view looks across it.
   void set_wind_from(double wind_from_deg) { wind_from_deg_ = wind_from_deg; }
-  /// Throws ViewerExit where the first ones are without the one that was asked for.
+  /// Throws ViewerExit if the first ones do not include the requested one.
   void set_scenes(std::vector<wire::SceneModel> scenes);
-  /// Light, which fades over `fade_s`, and cameras. Throws ViewerExit where the first are without the camera that was
-  /// asked for.
+  /// Takes light, which fades over `fade_s`, and cameras. Throws ViewerExit if the first ones do not include the
+  /// requested camera.
   void take_status(const wire::Sensors& status, double fade_s = light::SkyKeeper::kFade_s);
-  /// Does the command line ask for one of the sender's cameras?
+  /// Returns true if the command line names one of the sender's cameras.
   bool is_camera_named() const { return !options_.camera.empty() && !view_; }
-  /// Throws ViewerExit where the sender does not have it.
+  /// Throws ViewerExit if the sender does not have it.
   void require_camera() const;
 
-  /// The camera by hand, which begins where the picture is.
+  /// Returns the camera by hand, which starts at the present view.
   meshes::OrbitCamera& take_camera();
-  /// On to the next of the sender's cameras.
+  /// Shows the next of the sender's cameras.
   void show_next_camera() { cameras_.next(); }
-  /// That camera of the sender's, from 1.
+  /// Shows that camera of the sender, from 1.
   void show_camera(std::size_t number) { cameras_.show(number); }
   /// The camera by hand at its first place.
   void show_home();
-  /// The next quality, regardless of the look: low, medium, high, and low again. `present`: what is drawn.
+  /// Shows the next quality, regardless of the look: low, medium, high, and low again. `present`: the one that is
+  /// drawn.
   void show_next_quality(look::Quality present);
   void reset_camera();
-  /// After the choice of scenes: the camera by hand at its first place for them, or, where all are drawn, the first
-  /// camera.
+  /// Call after the choice of scenes: moves the camera by hand to its first place for them, or, if all are drawn, shows
+  /// the first camera.
   void frame_scenes(bool are_all);
 
-  /// Advances by passed_s. `utc_s`: the sender's clock, as its newest frame has it; 0 before the first.
+  /// Advances by passed_s. `utc_s`: the sender's clock, from its newest frame; 0 before the first.
   void advance(double passed_s, double utc_s, const wind::Vector& wind);
   void draw(const stream::PoseMoment& moment);
 
-  /// What the last picture showed.
+  /// The look of the last picture.
   const look::Look& look() const { return sky_.look(); }
   double heading_deg() const { return place_for(cameras_.now()).heading_deg; }
-  /// Does a camera's picture pass into another's? Then both are drawn.
+  /// Returns true during a cross-fade between two cameras. Then both are drawn.
   bool is_fading() const { return cameras_.is_fading(); }
-  /// "camera evening, cross-fading"; empty where the sender has none.
+  /// "camera evening, cross-fading"; empty if the sender has none.
   std::string camera_text() const;
 
  private:

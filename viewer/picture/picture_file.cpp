@@ -26,7 +26,7 @@ void write_picture(const std::filesystem::path& file, int width_px, int height_p
     auto& all = *static_cast<std::vector<std::uint8_t>*>(context);
     all.insert(all.end(), begin, begin + size);
   };
-  constexpr int kJpegQuality = 92;  // of 100: blades of grass keep their edges
+  constexpr int kJpegQuality = 92;  // of 100: keeps the edges of blades of grass
   const int is_encoded = picture_format(file) == Format::kJpeg
                              ? stbi_write_jpg_to_func(append, &bytes, width_px, height_px, 3, rgb.data(), kJpegQuality)
                              : stbi_write_png_to_func(append, &bytes, width_px, height_px, 3, rgb.data(), width_px * 3);

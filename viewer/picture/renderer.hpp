@@ -14,12 +14,12 @@
 
 namespace yuragi::viewer::picture {
 
-/// What a picture shows, and by which camera.
+/// The content of a picture, and its camera.
 struct Picture {
   const stream::PoseMoment& moment;
   meshes::CameraPlace camera;
-  std::optional<meshes::CameraPlace> fading_out = {};  ///< another camera's, which fades out
-  float share = 1.0F;                                  ///< of `camera`, while it does
+  std::optional<meshes::CameraPlace> fading_out = {};  ///< place of another camera that fades out
+  float share = 1.0F;                                  ///< of `camera`, during the cross-fade
 };
 
 /// Draws scenes into pictures of one size. Thread-safe: no.
@@ -35,14 +35,14 @@ class Renderer {
 
   /// Width / height of the pictures.
   virtual double aspect() const = 0;
-  /// The camera's first place for what is drawn, across a wind that comes from `wind_from_deg`.
+  /// The camera's first place for the drawn scenes, across a wind from `wind_from_deg`.
   virtual meshes::CameraPlace home(double wind_from_deg) const = 0;
-  /// The place itself, or so far back along its view that no camera stands within an animal.
+  /// Returns the place, moved back along its view if it is within an animal.
   virtual meshes::CameraPlace outside(const meshes::CameraPlace& place) const = 0;
-  /// The box around the scene of this name; nothing where there is none.
+  /// The box around the scene of this name; nullopt if there is none.
   virtual std::optional<meshes::Bounds> bounds_of(std::string_view scene) const = 0;
 
-  /// The boxes around what stands in a camera's way: all scenes but grass, ground and water.
+  /// The boxes around obstacles for a camera: all scenes except grass, ground and water.
   virtual std::vector<meshes::Bounds> obstacles() const { return {}; }
 
   virtual void set_light(const light::Light& light) = 0;

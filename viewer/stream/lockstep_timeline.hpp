@@ -15,22 +15,22 @@ class LockstepTimeline {
   /// The scenes of the frames that follow.
   void set_scenes(std::span<const wire::SceneModel> scenes);
 
-  /// Takes the next frame; swaps its buffers with old ones. False where it is not of these scenes, or not later than
-  /// the one before. A scene of opacity 0 may come without its pose: the last one is used.
+  /// Takes the next frame; swaps its buffers with old ones. Returns false if it is not of these scenes, or not later
+  /// than the one before. A scene of opacity 0 can come without its pose: the last one is used.
   bool accept(wire::Frame& frame);
 
   /// Has any frame come?
   bool has_begun() const { return count_ > 0; }
-  /// On the sender's time line. Not before a frame has come.
+  /// On the sender's time line. Only after a frame was taken.
   double newest_s() const { return newest_.time_s; }
 
-  /// The moment at time_s, which is not after newest_s(); before the last but one frame it is that one. Valid until the
-  /// next call.
+  /// The moment at time_s, which is not after newest_s(); before the last but one frame it is that frame. Valid until
+  /// the next call.
   const PoseMoment& at(double time_s);
 
  private:
   PoseMoment before_, newest_, shown_;
-  int count_ = 0;  // of the last two frames, those that have come
+  int count_ = 0;  // number of stored frames, up to two
 };
 
 }  // namespace yuragi::viewer::stream

@@ -9,9 +9,9 @@ namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kClockDrift = 0.001;      // two machines' clocks drift apart by less than this, s/s
-constexpr double kMaxWay_s = 10.0;         // a frame that took longer was made by another clock than ours,
-constexpr double kEarliestWay_s = -0.001;  // and so was one that came before it was made
-constexpr double kNewRun_s = 1.0;          // the sender's time advanced by so much more than ours
+constexpr double kMaxWay_s = 10.0;         // a frame that took longer was stamped by another clock than ours,
+constexpr double kEarliestWay_s = -0.001;  // and so was one that arrived before it was made
+constexpr double kNewRun_s = 1.0;          // the sender's time advanced by this much more than ours
 
 }  // namespace
 

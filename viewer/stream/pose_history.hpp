@@ -9,8 +9,8 @@ namespace yuragi::viewer::stream {
 
 /// The last few seconds of received poses, in the order of the sender's time.
 ///
-/// Memory is bounded: at most kMaxMoments, and fewer where they are large (kMaxBytes, but at least kMinMoments). Once
-/// it is full nothing is allocated: a new moment swaps its buffers with those of the oldest. Thread-safe: no.
+/// Memory is bounded: at most kMaxMoments, and fewer if they are large (kMaxBytes, but at least kMinMoments). Once it
+/// is full nothing is allocated: a new moment swaps its buffers with those of the oldest. Thread-safe: no.
 class PoseHistory {
  public:
   static constexpr std::size_t kMaxMoments = 256;  ///< four seconds at 60 Hz
@@ -20,7 +20,7 @@ class PoseHistory {
   /// Drops all moments, and prepares for poses of the layout of `layout`.
   void reset(const PoseMoment& layout);
 
-  /// Drops the moments but keeps their buffers.
+  /// Drops the moments and keeps their buffers.
   void clear() { first_ = count_ = 0; }
 
   /// Takes a moment later than newest(). Its poses are swapped with those of the oldest place.

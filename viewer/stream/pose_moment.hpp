@@ -8,11 +8,11 @@
 
 namespace yuragi::viewer::stream {
 
-/// What is shown at one moment: the wind, and the pose of each scene.
+/// The content of one moment: the wind, and the pose of each scene.
 struct PoseMoment {
   double time_s = 0.0;                                      ///< on the sender's time line
   wind::State wind;                                         ///< its `time` is not used
-  std::optional<double> view_wind_from_deg = std::nullopt;  ///< what cameras with a wind_angle follow
+  std::optional<double> view_wind_from_deg = std::nullopt;  ///< for cameras with a wind_angle
   std::vector<pose::Pose> poses;
   std::vector<float> opacities;  ///< one a scene, 0 (hidden) to 1
 };

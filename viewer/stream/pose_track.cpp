@@ -7,9 +7,9 @@ namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kTurnEasing_s = 1.0;    // to slow down before a turn, and to speed up after it
-constexpr double kFollowGain_1_s = 3.0;  // of the loop by which the moment shown follows the clock's target
-constexpr double kAtRest_s = 1e-4;       // nearer to the newest than this counts as there
-constexpr double kNewRun_s = 1.0;        // the sender's time advanced by so much more than ours: another run
+constexpr double kFollowGain_1_s = 3.0;  // of the loop by which the shown moment follows the clock's target
+constexpr double kAtRest_s = 1e-4;       // a smaller distance to the newest counts as zero
+constexpr double kNewRun_s = 1.0;        // the sender's time advanced by this much more than ours: another run
 
 }  // namespace
 

@@ -17,8 +17,8 @@ double back_and_forth_s(double elapsed_s, double span_s);
 class PoseTrack {
  public:
   static constexpr double kReplaySpan_s = 4.0;
-  static constexpr double kMinSilence_s = 0.5;  ///< no frame for so long (or four intervals): the stream has stopped
-  static constexpr double kMaxPlayRate = 1.3;   ///< of the sender's time line against ours, while it catches up
+  static constexpr double kMinSilence_s = 0.5;  ///< no frame for this long (or four intervals): the stream has stopped
+  static constexpr double kMaxPlayRate = 1.3;   ///< rate of the sender's time line against ours while catching up
   static constexpr double kMinPlayRate = 0.7;
 
   void reset(const PoseMoment& layout);
@@ -30,11 +30,11 @@ class PoseTrack {
   /// The moment that the last advance() was to show, on the sender's time line.
   double shown_s() const { return shown_s_; }
 
-  /// Takes over what a track of the same sender knows of its clock. Before the first push().
+  /// Takes over another track's knowledge of the same sender's clock. Call before the first push().
   void take_clock_of(const PoseTrack& other) { clock_ = other.clock_; }
 
-  /// Can a frame of the moment sender_s, arriving at local_s, be the next of this run? Not where the sender's time went
-  /// back, or advanced by much more than ours: then the sender has started again.
+  /// Returns true if a frame of the moment sender_s, arriving at local_s, can be the next of this run. Returns false if
+  /// the sender's time went back, or advanced by much more than ours: then the sender has restarted.
   bool continues(double sender_s, double local_s) const;
 
   /// Takes a frame that continues(); swaps its poses.

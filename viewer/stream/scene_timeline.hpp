@@ -9,10 +9,10 @@ namespace yuragi::viewer::stream {
 
 /// The scenes that are shown and their poses, while the daemon may exchange the scenes for others.
 ///
-/// The scenes of before are shown, each moment of the sender's time at its place, until the first frame of the new ones
-/// is due: so nothing is ever without a pose, no moment is passed over, and none is interpolated between two lists of
-/// scenes. Scenes whose skeletons are the same as before (a daemon that was restarted, another name) go on moving. An
-/// empty list is shown at once: it has no frames to wait for.
+/// The old scenes are shown until the first frame of the new ones is due: so every scene has a pose, no moment is
+/// skipped, and none is interpolated between two lists of scenes. Scenes with the same skeletons as before (after a
+/// restart of the daemon, or with another name) continue to move. An empty list is shown at once: it has no frames to
+/// wait for.
 ///
 /// Pure: time is a parameter, as in PoseTimeline. Thread-safe: no.
 class SceneTimeline {
@@ -20,13 +20,14 @@ class SceneTimeline {
   /// The scenes of the frames that follow.
   void set_scenes(wire::Scenes scenes);
 
-  /// Takes a frame that arrived at local_s; swaps its buffers with old ones. False where it is not of these scenes.
+  /// Takes a frame that arrived at local_s; swaps its buffers with old ones. Returns false if it is not of these
+  /// scenes.
   bool accept(wire::Frame& frame, double local_s);
 
   /// Advances to local_s. Returns the moment to show, valid until the next call.
   const PoseMoment& advance(double local_s);
 
-  /// The scenes that the moment of the last advance() is of, where they are others than when this was asked before.
+  /// Returns the scenes of the last advance() if they have changed since the last call.
   std::optional<std::vector<wire::SceneModel>> take_new_scenes();
 
   Playback playback() const { return present_.playback(); }
@@ -35,9 +36,9 @@ class SceneTimeline {
   PoseTimeline present_;
   std::vector<wire::SceneModel> scenes_;  // of present_
   bool has_scenes_ = false;
-  bool is_news_ = false;  // they have not been taken
+  bool is_news_ = false;  // not yet returned
 
-  std::optional<PoseTimeline> next_;  // of the scenes that are to be shown
+  std::optional<PoseTimeline> next_;  // for the scenes that are shown next
   std::vector<wire::SceneModel> next_scenes_;
   std::optional<double> next_begins_s_;  // the sender's time of their first frame
 };

@@ -5,11 +5,11 @@ namespace yuragi::viewer::stream {
 /// Which moment of the sender's time line to show now, estimated from the frames' arrivals.
 ///
 /// The arrivals with the shortest delay give the difference of the two clocks. A frame is needed until the next one
-/// comes: how late that one is, and how much later than the other its moment is, is what the picture has to stay behind
-/// so that it need not wait. It stays behind by the most of this in the last seconds, whether frames were late or lost,
-/// and half a frame interval, and comes nearer again as that is forgotten. As the playout delay of sound on networks is
-/// made: R. Ramjee, J. Kurose, D. Towsley and H. Schulzrinne, "Adaptive playout mechanisms for packetized audio
-/// applications in wide-area networks", INFOCOM 1994. Thread-safe: no. Never fails: times are finite.
+/// arrives: the picture must lag by that one's delay and the interval between the two, so that it need not wait. It
+/// lags by the maximum of this over the last seconds, whether frames were late or lost, plus half a frame interval, and
+/// catches up as the maximum is forgotten. This is the method of playout delay for sound on networks: R. Ramjee, J.
+/// Kurose, D. Towsley and H. Schulzrinne, "Adaptive playout mechanisms for packetized audio applications in wide-area
+/// networks", INFOCOM 1994. Thread-safe: no. Never fails: times are finite.
 class Clock {
  public:
   static constexpr double kMaxDelay_s = 0.5;

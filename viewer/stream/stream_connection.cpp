@@ -29,8 +29,8 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// Attempts to connect follow one another on one thread; a handler of an abandoned attempt finds `attempt_` changed and
-/// does nothing.
+/// Connection attempts run one after the other on one thread; a handler of an abandoned attempt finds `attempt_`
+/// changed and does nothing.
 class Connection::Session {
  public:
   explicit Session(Options options)
@@ -77,8 +77,8 @@ class Connection::Session {
   }
 
  private:
-  /// An exception is an error of this program, or there is no memory for a message: the connection is given up for it,
-  /// as for any other trouble.
+  /// An exception is an error of this program, or a lack of memory for a message: the connection is closed, as for any
+  /// other error.
   void serve() {
     const auto lose_connection = [this](const char* what) {
       give_up(fmt::format("lost the connection to {} by an error of this program ({})", address(), what));
@@ -96,7 +96,7 @@ class Connection::Session {
     announce_change();
   }
 
-  /// Whoever connects to an address of its own machine has the same address.
+  /// A client that connects to an address of its own machine has the same address.
   bool is_same_machine() const {
     error_code no_local;
     error_code no_remote;
@@ -135,7 +135,7 @@ class Connection::Session {
   void open(std::uint64_t attempt, const tcp::resolver::results_type& found) {
     asio::async_connect(socket_, found, [this, attempt](error_code error, const tcp::endpoint&) {
       if (attempt != attempt_) return;
-      if (error) return give_up(fmt::format("no daemon answers at {}: {}", address(), error.message()));
+      if (error) return give_up(fmt::format("no daemon replies at {}: {}", address(), error.message()));
       subscribe(attempt);
     });
   }
@@ -160,7 +160,7 @@ class Connection::Session {
     if (!is_writing_) write(attempt_);
   }
 
-  /// Writes what send() has left, one after the other.
+  /// Writes the messages of send(), one after the other.
   void write(std::uint64_t attempt) {
     is_writing_ = !unsent_.empty();
     if (!is_writing_) return;
@@ -183,7 +183,7 @@ class Connection::Session {
     });
   }
 
-  /// Passes on each whole message. False where the connection was abandoned.
+  /// Passes on each whole message. Returns false if the connection was abandoned.
   bool digest() {
     while (auto message = reader_.next()) {
       if (!*message) {
@@ -257,7 +257,7 @@ class Connection::Session {
   const Options options_;
   wire::Bytes subscription_;
 
-  // Of the connection's thread alone.
+  // Used by the connection's thread only.
   bool is_subscribed_ = false;
   bool is_writing_ = false;
   bool takes_display_ = false;      // the daemon of the newest Hello

@@ -17,10 +17,10 @@ struct TimedFrame {
   MonoTime arrival;
 };
 
-/// What has arrived since the last take(): scenes, then the frames of these scenes.
+/// What was received since the last take(): scenes, then the frames of these scenes.
 struct Inbox {
-  bool is_of_new_connection = false;    ///< replies to what was sent by another one will not come
-  std::optional<double> wind_from_deg;  ///< of a new connection's Hello, if it has it
+  bool is_of_new_connection = false;    ///< there will be no replies to messages sent over another one
+  std::optional<double> wind_from_deg;  ///< from a new connection's Hello, if it contains it
   std::optional<wire::Scenes> scenes;   ///< the newest
   std::vector<TimedFrame> frames;       ///< oldest first
   std::optional<wire::Sensors> sensors;
@@ -38,14 +38,14 @@ struct Status {
 struct Options {
   std::string host = "127.0.0.1";
   std::uint16_t port = wire::kDefaultPort;
-  Secret token = {};                                         ///< of the daemon's installation; empty: none is shown
+  Secret token = {};                                         ///< of the daemon's installation; empty: none is sent
   Nanoseconds min_backoff = std::chrono::milliseconds(200);  ///< before the first new attempt; doubles
   Nanoseconds max_backoff = std::chrono::seconds(3);
-  Nanoseconds silence_limit = std::chrono::seconds(6);  ///< after so long without a byte, or a reply: connect again
+  Nanoseconds silence_limit = std::chrono::seconds(6);  ///< connects again after this long without a byte, or a reply
 };
 
-/// A subscription to a daemon's stream, on a thread of its own, that is renewed without limit: where the daemon does
-/// not answer, ends or sends invalid bytes, it closes the connection, waits, and connects again.
+/// A subscription to a daemon's stream, on a thread of its own, that is renewed without limit: if the daemon does not
+/// reply, ends or sends invalid bytes, it closes the connection, waits, and connects again.
 ///
 /// Memory is bounded: without take() the oldest frames and replies are dropped, never scenes. Thread-safe: yes; meant
 /// for one reader. The destructor stops at once.
@@ -59,14 +59,14 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// What has arrived since the last call. Never waits for the network.
+  /// Returns what was received since the last call. Never waits for the network.
   Inbox take();
 
   Status status() const;
 
-  /// Sends a Control, soon. Where there is no connection it is dropped, and no reply comes.
+  /// Sends a Control, soon. Without a connection it is dropped, and there is no reply.
   void send(const wire::Control& control);
-  /// Likewise; to a daemon that does not know it, nothing is sent.
+  /// The same; not sent to a daemon that does not know the message.
   void send(const wire::Display& display);
 
   /// Waits until there is something to take(), the status changes, or `limit` has passed.

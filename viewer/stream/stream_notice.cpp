@@ -25,7 +25,7 @@ const std::string& Notice::advance(double now_s, Playback playback, const Status
     if (status.state == State::kConnected) {
       text_ = status.text + ", but no picture has come yet." + kAdvice;
     } else if (text_.empty()) {
-      text_ = status.text + ": no answer yet." + kAdvice;
+      text_ = status.text + ": no reply yet." + kAdvice;
     }
   }
   return text_;

@@ -8,10 +8,10 @@
 
 namespace yuragi::viewer::stream {
 
-/// The words shown instead of a picture while no frame has come: what is wrong, and what to do. A failure is shown at
-/// once; an attempt that neither fails nor brings a frame, after kPatience_s. The words stay until others replace them
-/// or frames come, so that they do not flicker while the connection is tried again. Once frames have come it stays
-/// empty: a lost stream is replayed. Not thread-safe.
+/// The text shown instead of a picture until the first frame: what is wrong, and what to do. A failure is shown at
+/// once; an attempt that neither fails nor brings a frame, after kPatience_s. The text stays until another replaces it
+/// or frames arrive, so that it does not flicker during further attempts. After the first frame it is empty: a lost
+/// stream is replayed. Not thread-safe.
 class Notice {
  public:
   static constexpr double kPatience_s = 1.0;

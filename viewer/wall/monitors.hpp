@@ -11,7 +11,7 @@ struct GLFWmonitor;
 
 namespace yuragi::viewer::wall {
 
-/// A monitor that is there at the moment.
+/// A connected monitor.
 struct Monitor {
   GLFWmonitor* handle = nullptr;
   std::string name = {};  ///< of its connector: "HDMI-1"
@@ -25,8 +25,8 @@ struct Monitor {
 /// All of them, the primary one first. After glfwInit(), on the main thread.
 std::vector<Monitor> monitors();
 
-/// The one that a configuration means: by its name, by its number from 0, or the primary one where that is empty.
-/// Nothing where it is not there.
+/// Returns the monitor of a configuration: by its name, by its number from 0, or the primary one if that is empty.
+/// Nullopt if it is not connected.
 std::optional<Monitor> monitor_named(std::string_view wanted);
 
 /// A line for each: "0  HDMI-1  1920 x 1080 at 60 Hz, from 0, 0". For people.

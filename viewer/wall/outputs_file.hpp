@@ -8,9 +8,9 @@
 
 namespace yuragi::viewer::wall {
 
-/// The output of this name in a configuration file; without a name the first. Nothing where the file has no output and
-/// none was asked for. Throws FailureError: kNoInput where the file cannot be read, kBadData with each mistake in it,
-/// kUsage where it has no output of this name, with those that it has.
+/// Returns the output of this name in a configuration file; without a name the first. Nullopt if the file has no output
+/// and no name was given. Throws FailureError: kNoInput if the file cannot be read, kBadData with each mistake in it,
+/// kUsage with the names of its outputs if it has none of this name.
 std::optional<output::Output> load_output(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace yuragi::viewer::wall

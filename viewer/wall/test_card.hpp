@@ -5,7 +5,7 @@
 
 namespace yuragi::viewer::wall {
 
-/// A picture by which a wall is set up: lines, circles, greys. Needs a current context.
+/// A picture for setting up a wall: lines, circles, greys. Needs a current context.
 class TestCard {
  public:
   TestCard();

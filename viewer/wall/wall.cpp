@@ -21,13 +21,13 @@ namespace {
 constexpr double kLookEvery_s = 1.0;  // a monitor's size can change without a word from GLFW
 constexpr int kUsualRate_hz = 60;
 
-/// Set by GLFW's callback, which has no place for data of ours.
+/// Set by GLFW's callback, which cannot carry our data.
 bool have_monitors_changed = false;
 
 struct Window {
   output::Window settings;
   GLFWwindow* handle = nullptr;
-  std::string monitor_name = {};        // by which it is found again, also where it was asked for by its number
+  std::string monitor_name = {};        // finds it again, also if it was chosen by its number
   std::optional<Monitor> monitor = {};  // on which it is
   GLuint vertex_array = 0;              // goes with its context
 };
@@ -68,7 +68,7 @@ struct Wall::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// Hidden, with what is typed going to the first.
+  /// Hidden; typed keys go to the first window.
   static GLFWwindow* make_sharing(GLFWwindow* first) {
     GLFWwindow* const made = glfwCreateWindow(64, 64, "Yuragi", nullptr, first);
     if (made == nullptr) {
@@ -88,7 +88,7 @@ struct Wall::State {
       const auto monitor = monitor_named(window.monitor_name);
       if (monitor != window.monitor) move(window, monitor);
       if (!window.monitor) continue;
-      // One window waits for the display: to wait for one after the other would halve the rate.
+      // Only one window waits for the display: waiting for one after the other would halve the rate.
       glfwMakeContextCurrent(window.handle);
       glfwSwapInterval(is_first ? output.refreshes : 0);
       is_first = false;
@@ -118,7 +118,7 @@ struct Wall::State {
   output::Output output;
   std::vector<Window> windows;
   std::optional<Pass> pass;
-  bool has_fences = false;  // one context can wait for another without the processor: from OpenGL 3.2 on
+  bool has_fences = false;  // a context can wait for another on the GPU: from OpenGL 3.2 on
   output::Size size{.width_px = 1280, .height_px = 720};
   double looked_s = -std::numeric_limits<double>::infinity();
 };

@@ -9,26 +9,26 @@ struct GLFWwindow;
 
 namespace yuragi::viewer::wall {
 
-/// The windows of an output, each of which fills its monitor with its part of the picture. A monitor that goes takes
-/// its window with it, and gets it again when it is back; so does one that changes its size. No cursor is seen, and as
-/// long as a window is there GLFW keeps the screen saver off. On the main thread.
+/// The windows of an output, each of which fills its monitor with its part of the picture. The window of a monitor that
+/// is disconnected is closed, and opened again when it returns; also if its size changes. The cursor is hidden, and
+/// while there is a window GLFW disables the screen saver. On the main thread.
 class Wall {
  public:
-  /// `first`: a hidden window whose context is current; the others share it, and give it what is typed. Throws
-  /// FailureError (kUnavailable) with the list of monitors where one of the output's does not exist.
+  /// `first`: a hidden window whose context is current; the others share it, and pass typed keys to it. Throws
+  /// FailureError (kUnavailable) with the list of monitors if one of the output's does not exist.
   Wall(GLFWwindow* first, const output::Output& output);
   ~Wall();
   Wall(const Wall&) = delete;
   Wall& operator=(const Wall&) = delete;
 
-  /// Looks for monitors that have come, gone or changed, where the system has said so, and each second. After polling
-  /// events.
+  /// Checks for monitors that were connected, disconnected or changed, when the system reports it, and each second.
+  /// Call after polling events.
   void follow_monitors(double now_s);
 
-  /// Is there no monitor at all at the moment?
+  /// Returns true if there is no monitor at present.
   bool is_dark() const;
 
-  /// The size that the picture should have; that of before where there is no monitor.
+  /// The required size of the picture; the previous one if there is no monitor.
   output::Size picture_size() const;
 
   /// The time between two pictures by the displays, s.

@@ -16,8 +16,8 @@ class Pass {
   /// Takes the resolved pixels of `target`.
   void take(const gl::RenderTarget& target);
 
-  /// Fills the framebuffer that is bound, of this size, black where the picture is not. `vertex_array`: any of the
-  /// current context, which no two contexts share. `is_marked`: with the crop's border and its strips.
+  /// Fills the framebuffer that is bound, of this size; black outside of the picture. `vertex_array`: any of the
+  /// current context, since contexts do not share them. `is_marked`: with the crop's border and its strips.
   void draw(const output::Window& window, const output::Size& monitor, GLuint vertex_array, bool is_marked);
 
  private:

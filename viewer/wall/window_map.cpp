@@ -8,9 +8,9 @@
 namespace yuragi::viewer::wall {
 namespace {
 
-/// From the monitor to the picture that hangs on it rotated.
+/// Converts from the monitor to the picture, which hangs rotated on it.
 glm::dmat3 unrotated(int rotation_deg) {
-  // Columns: where (1, 0), (0, 1) and the origin go.
+  // Columns: the images of (1, 0), (0, 1) and the origin.
   switch (rotation_deg) {
     case 90:
       return {{0, -1, 0}, {1, 0, 0}, {0, 1, 1}};
@@ -23,7 +23,7 @@ glm::dmat3 unrotated(int rotation_deg) {
   }
 }
 
-/// A strip's light, `into` of its width from the side on.
+/// The light of a strip at `into` of its width from the side.
 double ramp(double into) {
   if (into >= 1.0) return 1.0;
   const double from_side = std::max(into, 0.0);

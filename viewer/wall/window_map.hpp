@@ -9,15 +9,15 @@
 
 namespace yuragi::viewer::wall {
 
-// Which place of the picture each place of a monitor shows. Places are parts of width and height, x to the right, y
-// down. Pure, without a GPU.
+// Maps places on a monitor to places in the picture. Places are parts of width and height, x to the right, y down.
+// Pure, without a GPU.
 
 /// The projective map from the unit square to a convex quadrilateral: its corners go to `corners`, and straight lines
 /// stay straight. (P. Heckbert, "Fundamentals of Texture Mapping and Image Warping", 1989, section 2.2.3.)
 glm::dmat3 square_to(const output::Corners& corners);
 
-/// From a place on the monitor to one in the window's crop, both from 0 to 1: undoes the rotation and the corners.
-/// Homogeneous; the third coordinate is above 0 wherever the picture can be seen.
+/// Maps a place on the monitor to one in the window's crop, both from 0 to 1: undoes the rotation and the corners.
+/// Homogeneous; the third coordinate is positive wherever the picture is visible.
 glm::dmat3 monitor_to_crop(const output::Window& window);
 
 /// A homogeneous map, applied.
@@ -31,8 +31,8 @@ double blend_light(const glm::dvec2& place, const output::Sides& blend);
 /// The blend's widths as parts of the window's crop.
 output::Sides blend_of_crop(const output::Window& window);
 
-/// The size of a picture that has a pixel for each pixel of the finest window. `monitors`: the size of each window's
-/// monitor, empty (0) where it is not there.
+/// The size of a picture with at least one pixel for each pixel of the finest window. `monitors`: the size of each
+/// window's monitor, empty (0) if it is not connected.
 output::Size picture_size(const output::Output& output, std::span<const output::Size> monitors);
 
 }  // namespace yuragi::viewer::wall

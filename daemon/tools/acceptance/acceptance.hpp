@@ -34,7 +34,7 @@ std::string_view name_of(Outcome outcome);
 
 struct SensorVerdict {
   Outcome outcome = Outcome::kPassed;
-  std::vector<std::string> remarks;  ///< what is not as it should be, or was not shown
+  std::vector<std::string> remarks;  ///< deviations, and missing proofs
 };
 
 // Limits of the verdicts.

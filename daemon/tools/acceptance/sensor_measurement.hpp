@@ -23,7 +23,7 @@ class SensorMeasurement {
   bool has_reading() const { return first_reading_.has_value(); }
   std::optional<double> direction_deg() const { return measured_.status.direction_deg; }
 
-  /// What came of it until `now`.
+  /// The result until `now`.
   SensorMeasured result(Instant now) const;
 
  private:

@@ -17,7 +17,7 @@ namespace yuragi::daemon::tools::acceptance {
 inline constexpr double kSimulatedSpeed_m_s = 8.0;
 inline constexpr double kSimulatedDirection_deg = 225.0;
 
-/// How a configured sensor is simulated.
+/// The simulation of a configured sensor.
 struct SimulationPlan {
   std::vector<std::string> arguments;  ///< of yuragi-sim, which listens at a free port of 127.0.0.1, or sends there
   settings::SensorConfig sensor;       ///< the configured one, except for the way to its device; without its port

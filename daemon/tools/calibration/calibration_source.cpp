@@ -153,7 +153,7 @@ class DaemonSource final : public Source {
   Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) override {
     // A new connection: an old one would deliver readings from before the stretch.
     auto client = connect_to_daemon(address_);
-    if (!client) return unavailable("the daemon at " + address_ + " no longer answers");
+    if (!client) return unavailable("the daemon at " + address_ + " no longer replies");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
     std::vector<std::string> links(sensors_.size(), "unknown to the daemon");
 

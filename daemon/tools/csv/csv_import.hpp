@@ -30,7 +30,7 @@ struct ImportReport {
 /// What takes the readings, each with the name of its sensor. May throw, which ends the import.
 struct Sinks {
   std::function<void(std::string_view sensor, const wind::Reading& reading)> reading;
-  /// After the reading of the same time; may be empty.
+  /// After the reading of the same time; can be empty.
   std::function<void(std::string_view sensor, const wind::StationQuantities& quantities)> quantities = {};
 };
 

@@ -8,7 +8,7 @@
 namespace yuragi::daemon::tools::csv {
 namespace {
 
-/// A text that is read where it is.
+/// A text that is read in place.
 class TextInPlace : public std::streambuf {
  public:
   explicit TextInPlace(std::string& text, std::size_t size) { setg(text.data(), text.data(), text.data() + size); }
@@ -25,7 +25,7 @@ class TextInPlace : public std::streambuf {
   }
 };
 
-/// A text, and then what another stream goes on with.
+/// A text, followed by the rest of another stream.
 class TextThenStream : public std::streambuf {
  public:
   TextThenStream(std::string& text, std::istream& rest) : rest_(rest) {

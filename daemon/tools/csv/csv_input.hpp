@@ -11,8 +11,8 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// A stream that is read twice: first to see what is in it, then for its rows. One that cannot go back (a pipe) is kept
-/// as far as kMaxKept, and seen as far as that. Thread-safe: no.
+/// A stream that is read twice: first to examine it, then for its rows. Of one that cannot go back (a pipe) the first
+/// kMaxKept bytes are kept and examined. Thread-safe: no.
 class Input {
  public:
   static constexpr std::size_t kMaxKept = std::size_t{32} << 20;
@@ -20,7 +20,7 @@ class Input {
   /// `in` must outlive this.
   explicit Input(std::istream& in);
 
-  /// The stream from its beginning, as far as it can be seen: all of it, or its first whole lines.
+  /// The stream from its beginning: all of it, or, for a pipe, its first whole lines.
   std::istream& first_pass();
   /// The whole stream from its beginning.
   std::istream& second_pass();

@@ -9,14 +9,14 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// Where the table of a CSV file is, and what its columns are.
+/// The position of the table in a CSV file, and its columns.
 struct Layout {
   char delimiter = ',';
   std::vector<std::string> header;
   std::size_t first_row = 0;       ///< the number of its line, from 1
   std::vector<std::string> row;    ///< the first one's fields
   Columns columns;                 ///< with units and zone from name, row of units or preamble
-  std::vector<std::string> notes;  ///< what was understood of the lines around the header
+  std::vector<std::string> notes;  ///< information from the lines around the header
 };
 
 /// Finds the header in the first lines of a file: the first line that names a time and a wind; else a line and the one

@@ -37,7 +37,7 @@ struct ImportOptions {
   bool components_are_from = false;   ///< u and v point to where the wind comes from
   char delimiter = 0;                 ///< ',', ';', '|', tab, or ' ' (any blanks); 0: as the header has it
   char comment = '#';                 ///< lines that begin with it are skipped; 0: none are
-  std::optional<std::size_t> skip;    ///< so many lines stand before the header; empty: it is looked for
+  std::optional<std::size_t> skip;    ///< number of lines before the header; nullopt: it is searched for
   std::vector<std::string> header;    ///< the names of the columns of a file without a header; empty: it has one
   std::vector<Condition> conditions;  ///< all are to hold
   std::vector<std::string> missing;   ///< further texts that stand for no value ("99.0")

@@ -20,7 +20,7 @@ namespace {
 constexpr int kElapsedDecimals = 9;
 constexpr std::size_t kMaxOddDirections = 5;
 
-/// The start of a field that may be anything.
+/// The start of a field with any content.
 std::string shown(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string start(text.substr(0, kShown));

@@ -33,7 +33,7 @@ class RowReader {
 
   /// How each column was understood, a line each; complete after the last row.
   std::vector<std::string> describe() const;
-  /// What was left out of the rows that were taken, and what is odd about their times.
+  /// Parts omitted from accepted rows, and remarks about their times.
   std::vector<std::string> notes() const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// What only all rows together show.
+/// Findings from all rows together.
 struct Survey {
   TimeFormat time_format = TimeFormat::kIso;
   bool is_newest_first = false;

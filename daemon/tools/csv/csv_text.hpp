@@ -21,7 +21,7 @@ void append_log_time(std::string& text, Nanoseconds log_time);
 /// A text, quoted where necessary. Line ends are replaced.
 void append_text(std::string& text, std::string_view field);
 
-/// With as many digits as give the same number when read; nothing for no number.
+/// With as many digits as give the same number when read; empty for nullopt.
 void append_number(std::string& text, const std::optional<double>& number);
 
 /// As much of a file is put together before it is written.

@@ -129,7 +129,7 @@ class CalendarText {
     return true;
   }
 
-  /// What stands between a date and a clock.
+  /// Takes the separator between a date and a clock time.
   bool take_separator() {
     if (!take_any("Tt ,;_")) return false;
     skip_blanks();

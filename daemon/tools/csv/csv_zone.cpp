@@ -12,7 +12,7 @@ namespace yuragi::daemon::tools::csv {
 Result<Zone, Failure> Zone::parse(std::string_view text) {
   Zone zone;
   zone.name_ = without_blanks(text);
-  // As it would stand behind a time.
+  // As it would follow a time.
   const auto written = parse_time("2000-01-01 00:00 " + zone.name_, TimeFormat::kIso);
   if (written && written->utc_offset) {
     zone.offset_ = *written->utc_offset;

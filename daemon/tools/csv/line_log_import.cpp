@@ -23,7 +23,7 @@ std::string_view text_of(Lines& lines) {
   return {line.data(), line.size()};
 }
 
-/// What a log has, before one of its sources is chosen.
+/// The content of a log, before one of its sources is chosen.
 struct LogContents {
   std::map<std::string, std::size_t, std::less<>> sources;  ///< readings with a speed, by source
   std::size_t leading_times = 0;

@@ -91,7 +91,7 @@ std::optional<Time> leading_time(std::string_view prefix, TimeFormat format) {
   if (begin == std::string_view::npos) return std::nullopt;
   prefix = prefix.substr(begin, prefix.find_last_not_of(kAround) - begin + 1);
   if (const auto time = time_in(prefix, format)) return time;
-  // Behind the time may stand more: a port, a priority.
+  // More can follow the time: a port, a priority.
   for (const char separator : {';', ',', '\t', ']', ')'}) {
     const std::string_view first = without_blanks(prefix.substr(0, prefix.find(separator)));
     if (const auto time = time_in(first, format)) return time;

@@ -24,7 +24,7 @@ namespace yuragi::daemon::tools::decode {
 /// One received message: a line, a report, a reply.
 struct RawUnit {
   drivers::decode::ByteSpan bytes;
-  drivers::decode::ByteSpan request;  ///< what it replies to; empty if that is not known
+  drivers::decode::ByteSpan request;  ///< the request; empty if unknown
 };
 
 /// The content of a message. Of a counter: its count and its analogue input; the wind is empty unless the options
@@ -38,7 +38,7 @@ struct UnitReading {
 /// Why a message has no reading.
 struct UnitRefusal {
   drivers::decode::Refusal why = drivers::decode::Refusal::kMalformed;
-  std::string detail;  ///< more about it, for people; may be empty
+  std::string detail;  ///< more about it, for people; can be empty
 };
 
 /// Decodes messages in the order in which they were received. Thread-safe: no.

@@ -15,9 +15,9 @@ namespace yuragi::daemon::tools::decode {
 /// One message of an input, or the text of the input and what is wrong with it.
 struct ReadUnit {
   drivers::decode::ByteSpan bytes;
-  drivers::decode::ByteSpan request;            ///< what is before '|' in hexadecimal input
+  drivers::decode::ByteSpan request;            ///< the text before '|' in hexadecimal input
   std::string_view text;                        ///< as it is in the input
-  std::optional<drivers::decode::Refusal> why;  ///< why nothing can be decoded
+  std::optional<drivers::decode::Refusal> why;  ///< the reason why nothing can be decoded
   std::string_view detail = {};
 };
 

@@ -30,15 +30,15 @@ double readings_per_s(const settings::Config& config, const std::optional<wire::
 
 /// What is plugged in and cannot be opened, although no sensor of the configuration names it.
 void add_other_devices(std::vector<Finding>& all, std::span<const sensors::DeviceFinding> plugged) {
-  std::vector<std::string> told;
-  told.reserve(all.size());
-  for (const Finding& finding : all) told.push_back(finding.text);
+  std::vector<std::string> reported;
+  reported.reserve(all.size());
+  for (const Finding& finding : all) reported.push_back(finding.text);
   for (const sensors::DeviceFinding& found : plugged) {
     if (found.device.trouble.empty()) continue;
-    const bool is_told = std::ranges::any_of(
-        told, [&](const std::string& text) { return text.find(found.device.what) != std::string::npos; });
-    if (is_told) continue;
-    told.push_back(found.device.what);
+    const bool is_reported = std::ranges::any_of(
+        reported, [&](const std::string& text) { return text.find(found.device.what) != std::string::npos; });
+    if (is_reported) continue;
+    reported.push_back(found.device.what);
     all.push_back({Verdict::kWarning, "device", found.device.what + ": " + found.device.trouble, found.device.remedy});
   }
 }
@@ -62,7 +62,7 @@ std::vector<Finding> examine(const Examination& examination, const std::function
   begin("the devices that are plugged in");
   const auto plugged = sensors::find_devices(drivers::sensor::driver_table());
   if (examination.config) {
-    begin("the sensors' devices, up to 2 s for each that does not answer");
+    begin("the sensors' devices, up to 2 s for each that does not reply");
     for (const DeviceFacts& device : probe_devices(config, plugged, running, kNetworkTimeout))
       all.push_back(judge(device));
   }

@@ -23,7 +23,7 @@ struct Examination {
 
 /// Looks at the devices that the configuration names, permissions, clock, disk, ports, graphics, versions and limits of
 /// this machine, and judges each. Changes nothing, and opens no device for longer than a driver's search does. Takes
-/// some seconds: 2 s for each network device that does not answer. `begin_step` (may be empty) is called before each
+/// some seconds: 2 s for each network device that does not reply. `begin_step` (can be empty) is called before each
 /// part that can take long, with its name ("the sensors' devices").
 std::vector<Finding> examine(const Examination& examination,
                              const std::function<void(std::string_view)>& begin_step = {});

@@ -27,10 +27,10 @@ struct DeviceFacts {
   bool is_used = false;                ///< the running daemon has readings from this sensor; it was not touched then
   bool is_there = false;
   std::string trouble{};  ///< why it cannot be used; of the network: why it cannot be reached
-  std::string remedy{};   ///< what to do about that, from the driver; may be empty
+  std::string remedy{};   ///< what to do about that, from the driver; can be empty
 };
 
-/// Who asks, and which groups the sensors' devices belong to.
+/// The user, and the groups of the sensors' devices.
 struct GroupFacts {
   std::string user{};
   bool is_root = false;
@@ -59,7 +59,7 @@ struct DiskFacts {
 struct PortFacts {
   std::string address{};
   std::string trouble{};  ///< why it cannot be listened on; empty: it can
-  std::string daemon{};   ///< "yuragi 0.2.0": who answers there; empty: no daemon of ours
+  std::string daemon{};   ///< "yuragi 0.2.0": the daemon that replies there; empty: none of ours
   std::uint16_t port = 0;
   bool is_in_use = false;
 };

@@ -13,7 +13,7 @@ namespace yuragi::daemon::tools::doctor {
 enum class Verdict : std::uint8_t { kOk, kWarning, kError };
 std::string_view name_of(Verdict verdict);
 
-/// What was found of one thing.
+/// A finding about one thing.
 struct Finding {
   Verdict verdict = Verdict::kOk;
   std::string area;    ///< one word: "sensor", "disk", "clock"

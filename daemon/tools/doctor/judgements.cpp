@@ -157,7 +157,7 @@ Finding judge(const DiskFacts& disk) {
 }
 
 Finding judge(const PortFacts& port) {
-  if (!port.daemon.empty()) return ok("port", fmt::format("{}: {} answers", port.address, port.daemon));
+  if (!port.daemon.empty()) return ok("port", fmt::format("{}: {} replies", port.address, port.daemon));
   if (port.trouble.empty()) return ok("port", port.address + " is free; no daemon runs");
   const std::string remedy = port.is_in_use
                                  ? fmt::format("sudo ss -ltnp 'sport = :{}'", port.port)

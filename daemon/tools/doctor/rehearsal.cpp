@@ -335,7 +335,7 @@ void look_at(PathFacts& path) {
   path.folders.clear();
   for (const fs::path& folder : folders) {
     Node node = node_of(folder);
-    if (!node.is_there) break;  // what is below it is missing, too
+    if (!node.is_there) break;  // the rest is missing, too
     path.folders.push_back(std::move(node));
   }
   path.node = node_of(named);

@@ -31,7 +31,7 @@ std::vector<sensors::DeviceFinding> plugged_devices(const settings::Config& conf
 /// keys and devices. Relative ones begin where the service would look. Pure.
 std::vector<PathFacts> named_paths(const Rehearsal& rehearsal);
 
-/// Looks at a path and at each folder above it. Opens nothing.
+/// Inspects a path and each folder above it. Opens nothing.
 void look_at(PathFacts& path);
 
 /// What the configuration will meet in the unit: errors and warnings; none if all is well. Opens no device and no file;

@@ -9,7 +9,7 @@ namespace yuragi::daemon::tools::doctor {
 
 // What rehearsal.hpp finds, and service_judgements.hpp judges for the user of a unit.
 
-/// What the service does with a path.
+/// The service's use of a path.
 enum class PathUse : std::uint8_t {
   kRead,        ///< a file
   kReadSecret,  ///< a file that no one else is to read
@@ -48,7 +48,7 @@ struct ListenFacts {
   std::string address{};
   std::uint16_t port = 0;
   std::string trouble{};                    ///< why nobody can listen there; empty: somebody can
-  std::optional<std::uint32_t> listener{};  ///< the user id of who listens there
+  std::optional<std::uint32_t> listener{};  ///< the user id of the program that listens there
   bool is_own = false;                      ///< it is this daemon that listens there
   std::uint16_t first_unprivileged_port = 1024;
 };

@@ -34,8 +34,8 @@ struct ServiceUnit {
   std::vector<std::uint32_t> group_ids{};
 };
 
-/// Reads a unit's text, with its drop-ins behind it. As systemd does, an empty value empties a list. What it does not
-/// know it passes over. The ids are those of nobody. Pure.
+/// Reads a unit's text, with its drop-ins behind it. As systemd does, an empty value empties a list. Unknown keys are
+/// ignored. The ids are those of nobody. Pure.
 ServiceUnit parse_unit(std::string name, std::string_view text);
 
 /// The unit as it is installed on this machine, with its drop-ins and the user's ids; nullopt: it is not installed.

@@ -93,7 +93,7 @@ class Ticks {
   LockstepResult result_;
 };
 
-/// What the recording's clock shows, between the moments at which it is read, which are those of its readings.
+/// The recording's clock, interpolated between its readings.
 class RecordedClock {
  public:
   UtcTime at(Nanoseconds log_time, UtcTime read) {

@@ -41,10 +41,10 @@ using UseTick = std::function<void(const ReplayTick& tick)>;
 
 /// Replays in log time, tick by tick, with no clock and no thread, so that every run of the same seed and recording
 /// gives the same poses, bit for bit. Log time is that of the playback at rate 1, loops and their seams included.
-/// `progress` is called about once a second of work with the log time reached; it may be empty, and so may `use`. Ends
+/// `progress` is called about once a second of work with the log time reached; it can be empty, and so may `use`. Ends
 /// after `duration_s` of log time, if above 0. Log time begins where the replay was to begin: in the seconds before, of
-/// `options.lead_s`, scenes live in the wind, and neither `use` nor the result sees them. Fails if the recording
-/// cannot be read.
+/// `options.lead_s`, scenes live in the wind, and neither `use` nor the result sees them. Fails if the recording cannot
+/// be read.
 Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
                                                    const std::filesystem::path& recording,
                                                    const drivers::windlog::PlayerOptions& options, double duration_s,

@@ -27,7 +27,7 @@ struct WindOptions {
   double until_s = std::numeric_limits<double>::infinity();  ///< the last tick; nothing is read beyond it
   /// Judges the readings of each recording, and compares several, as the daemon does; as it is, all are believed.
   sensing::JuryRules rules{};
-  double stale_intervals = wind::blend::Settings{}.stale_intervals;  ///< silent for so long: not compared
+  double stale_intervals = wind::blend::Settings{}.stale_intervals;  ///< silent for this long: not compared
   bool has_relative_gains = true;  ///< those that are compared are levelled to their common mean
 };
 

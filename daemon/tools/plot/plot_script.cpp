@@ -11,7 +11,7 @@
 namespace yuragi::daemon::tools::plot {
 namespace {
 
-/// Runs gnuplot on a script. False: it is not installed, or failed.
+/// Runs gnuplot on a script. Returns false if it is not installed, or failed.
 bool run_gnuplot(const std::string& script_file) {
   try {
     return platform::ChildProcess({.command = {"gnuplot", script_file}}).wait().is_good();

@@ -18,7 +18,7 @@ ordered_json text_or_null(std::string_view text) {
   return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }
 
-/// What stands for it in a configuration; null if leaving it out has a meaning of its own.
+/// Its value in a configuration; null if leaving it out has a meaning of its own.
 ordered_json default_of(const Parameter& parameter) {
   if (!parameter.left_out.empty()) return nullptr;
   return std::visit([](const auto& value) { return ordered_json(value); }, printable(parameter.default_value));

@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::tools::sensors {
 
-/// How a recording that is played does, on one line for a person.
+/// The state of a recording that is played, on one line for a person.
 std::string player_text(const wire::PlayerState& player);
 
 }  // namespace yuragi::daemon::tools::sensors

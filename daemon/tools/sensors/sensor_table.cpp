@@ -15,9 +15,9 @@ namespace {
 
 /// Returns true if recordings are the only live sensors.
 bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
-  const auto speaks = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
-  return std::ranges::any_of(sensors, speaks) &&
-         std::ranges::none_of(sensors, [&](const auto& sensor) { return speaks(sensor) && !sensor.replayed; });
+  const auto is_used = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
+  return std::ranges::any_of(sensors, is_used) &&
+         std::ranges::none_of(sensors, [&](const auto& sensor) { return is_used(sensor) && !sensor.replayed; });
 }
 
 std::string_view wind_source(const wire::Sensors& sensors) {

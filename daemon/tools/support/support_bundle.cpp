@@ -96,7 +96,7 @@ constexpr const char* kReadme =
 
 void add_status(std::map<std::string, std::string>& files, const BundleRequest& request) {
   if (!request.examination.daemon) {
-    files["status.txt"] = "no daemon answers\n";
+    files["status.txt"] = "no daemon replies\n";
     return;
   }
   files["status.txt"] = sensors::status_text(*request.examination.daemon);

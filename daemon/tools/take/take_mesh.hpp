@@ -34,7 +34,7 @@ struct Mesh {
 /// Pure.
 Mesh take_mesh_of(const pose::Skeleton& skeleton, std::size_t every);
 
-/// About the smallest `every` with which the mesh has at most so many joints; nullopt if there is none.
+/// About the smallest `every` with which the mesh has at most this many joints; nullopt if there is none.
 std::optional<std::size_t> every_within(const pose::Skeleton& skeleton, std::size_t most_joints);
 
 }  // namespace yuragi::daemon::tools::take

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-// Debian's header makes the library's own calls of what its implementation needs; images are not used.
+// Debian's header needs this for the library's implementation; images are not used.
 #define TINYGLTF_NO_STB_IMAGE
 #define TINYGLTF_NO_STB_IMAGE_WRITE
 #include <tiny_gltf.h>

@@ -18,7 +18,7 @@ export class Change {
       if (error instanceof Refused && error.status === 401) {
         if (await this.pairing.open(error.message)) return this.make<T>(path, body);
       } else {
-        this.tell(error instanceof Refused ? error.message : "Not done: the daemon does not answer.");
+        this.tell(error instanceof Refused ? error.message : "Not done: the daemon does not reply.");
       }
       return undefined;
     }

@@ -37,7 +37,7 @@ export class Pairing {
       this.end(true);
       this.dialog.close();
     } catch (error) {
-      set_text(this.error, error instanceof Refused ? error.message : "The daemon does not answer.");
+      set_text(this.error, error instanceof Refused ? error.message : "The daemon does not reply.");
       this.code.select();
     }
   }

@@ -17,7 +17,7 @@ constexpr unsigned kNoVantageWord = 0xFFFF;
 constexpr unsigned kNoSignedWord = 0x7FFF;
 constexpr std::array<double, 3> kRainOfTips_mm = {0.254, 0.2, 0.1};
 
-bool is_told(unsigned word) {
+bool is_valid_value(unsigned word) {
   return word != kNoVantageWord && word != kNoSignedWord;
 }
 
@@ -35,8 +35,8 @@ std::optional<Refusal> packet_refusal(ByteSpan packet) {
 std::optional<double> gust_of_loop2_m_s(ByteSpan packet) {
   const unsigned gust_mph = little_endian_16(packet, 22);
   const unsigned average_tenths_mph = little_endian_16(packet, 18);
-  if (!is_told(gust_mph) || gust_mph == kNoVantageByte) return std::nullopt;
-  if (is_told(average_tenths_mph) && 10 * gust_mph < average_tenths_mph) return std::nullopt;
+  if (!is_valid_value(gust_mph) || gust_mph == kNoVantageByte) return std::nullopt;
+  if (is_valid_value(average_tenths_mph) && 10 * gust_mph < average_tenths_mph) return std::nullopt;
   const double gust_m_s = gust_mph * kMetresPerSecondPerMph;
   return gust_m_s <= wind::kMaxPlausibleSpeed_m_s ? std::optional(gust_m_s) : std::nullopt;
 }
@@ -67,7 +67,7 @@ Result<DecodedWind, Refusal> decode_vantage_packet(ByteSpan packet) noexcept {
   if (const auto refusal = packet_refusal(packet)) return *refusal;
   const unsigned speed_mph = packet[14];
   const unsigned direction_deg = little_endian_16(packet, 16);
-  const bool has_direction = direction_deg != 0 && is_told(direction_deg);
+  const bool has_direction = direction_deg != 0 && is_valid_value(direction_deg);
   if (speed_mph == kNoVantageByte || (speed_mph == 0 && !has_direction)) return Refusal::kInvalid;
 
   DecodedWind wind;
@@ -86,10 +86,10 @@ std::optional<wind::StationQuantities> decode_vantage_quantities(ByteSpan packet
                                                                  std::optional<double> rain_of_a_tip_mm) noexcept {
   if (packet_refusal(packet)) return std::nullopt;
   wind::StationQuantities said;
-  if (const unsigned pressure = little_endian_16(packet, 7); pressure != 0 && is_told(pressure)) {
+  if (const unsigned pressure = little_endian_16(packet, 7); pressure != 0 && is_valid_value(pressure)) {
     said.pressure_hpa = pressure / 1000.0 * kHpaInInchOfMercury;
   }
-  if (const unsigned temperature = little_endian_16(packet, 12); is_told(temperature)) {
+  if (const unsigned temperature = little_endian_16(packet, 12); is_valid_value(temperature)) {
     said.air_temperature_c = (static_cast<std::int16_t>(temperature) / 10.0 - 32.0) / 1.8;
   }
   if (packet[33] != kNoVantageByte) said.relative_humidity_percent = packet[33];

@@ -42,7 +42,7 @@ inline constexpr std::size_t kVantagePacket = 99;
 /// Thread-safe and realtime-safe: yes.
 std::uint16_t vantage_checksum(ByteSpan bytes) noexcept;
 
-/// Is a packet that begins so one of these, as far as it has come? Thread-safe and realtime-safe: yes.
+/// Returns true if these first bytes can be the beginning of such a packet. Thread-safe and realtime-safe: yes.
 bool begins_vantage_packet(ByteSpan beginning) noexcept;
 
 /// The wind of one packet, from north; or the first thing that is wrong with it: kTooShort, kMalformed (longer, another

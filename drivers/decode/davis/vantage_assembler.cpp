@@ -21,7 +21,7 @@ std::optional<VantageAssembler::Packet> VantageAssembler::next(ByteSpan& bytes) 
         return ByteSpan(bytes_);
       }
       drop_front();
-      is_outside_ = true;  // what follows up to the next beginning is the rest of this one
+      is_outside_ = true;  // bytes up to the next beginning belong to this one
       return Refusal::kBadChecksum;
     }
   }
@@ -34,7 +34,7 @@ bool VantageAssembler::cut() noexcept {
   return std::exchange(size_, 0) > 0 && !is_taken;
 }
 
-/// The bytes from the next beginning of a packet on, which may be none.
+/// Keeps the bytes from the next beginning of a packet on, if any.
 void VantageAssembler::drop_front() noexcept {
   do {
     std::copy(bytes_.begin() + 1, bytes_.begin() + static_cast<std::ptrdiff_t>(size_), bytes_.begin());

@@ -38,7 +38,7 @@ bool is_record(const Json& record, int type) {
   return record.is_object() && number_at(record, "data_structure_type") == type;
 }
 
-/// What a reply has as its data, which of a broadcast is all of it.
+/// The data of a reply; for a broadcast the whole object.
 Result<const Json*, Refusal> data_of(const Json& message) {
   if (!message.is_object()) return Refusal::kMalformed;
   if (part_at(message, "error") != nullptr) return Refusal::kException;

@@ -22,7 +22,7 @@ double acurite_speed_m_s(unsigned n) {
   return n == 0 ? 0.0 : (0.8278 * n + 1.0) * kMetresPerSecondPerKmh;
 }
 
-/// Why nothing is to be read of the report. There is no checksum: every mark must be one that is known.
+/// The reason why a report cannot be used. There is no checksum: every mark must be a known one.
 std::optional<Refusal> acurite_refusal(ByteSpan report) {
   if (report.empty()) return Refusal::kTooShort;
   if (report[0] != 1) return Refusal::kNotMine;

@@ -55,7 +55,7 @@ std::array<std::uint8_t, 8> encode_fineoffset_read(std::uint16_t address) noexce
 /// position outside the ring or between two records). Thread-safe and realtime-safe: yes.
 Result<FineOffsetFixedBlock, Refusal> decode_fineoffset_fixed_block(ByteSpan block, FineOffsetModel model) noexcept;
 
-/// Where the record before `position` stands: the ring's last one before the first.
+/// The position of the record before `position`: for the first, the ring's last one.
 std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetModel model) noexcept;
 
 /// The wind of one record (16 bytes, 20, or the whole block of 32 that begins with it), or the first thing that is

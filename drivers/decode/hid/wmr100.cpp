@@ -18,7 +18,7 @@ constexpr unsigned kWmr100Outdoors = 1;
 constexpr double kMillimetresPerHundredthInch = 0.254;
 constexpr std::uint8_t kWmr100Separator = 0xFF;
 
-/// Are the last two bytes the sum of those before? The frame has two bytes at least.
+/// Returns true if the last two bytes are the sum of those before. The frame has at least two bytes.
 bool has_right_sum(ByteSpan frame) {
   const std::size_t body = frame.size() - kWmr100Sum;
   return sum_16(frame.first(body)) == little_endian_16(frame, body);
@@ -28,7 +28,7 @@ bool is_whole_wind_frame(const Wmr100Stream& stream) {
   return stream.size == kWmr100WindFrame && stream.frame[1] == kWmr100Wind;
 }
 
-/// What has been collected, as a frame; the stream then waits for the next ff ff.
+/// Ends the frame that was collected; the stream then waits for the next ff ff.
 Result<DecodedWind, Refusal> end_frame(Wmr100Stream& stream) {
   const auto decoded = decode_wmr100_frame(ByteSpan(stream.frame).first(stream.size));
   stream.ended_size = stream.size;
@@ -84,7 +84,7 @@ ByteSpan ended_wmr100_frame(const Wmr100Stream& stream) noexcept {
 }
 
 Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept {
-  // Whole, undamaged, and the wind's?
+  // Refuses frames that are incomplete, damaged, or not the wind's.
   if (frame.size() < 2 + kWmr100Sum) return Refusal::kTooShort;
   if (frame[1] == kWmr100Wind && frame.size() < kWmr100WindFrame) return Refusal::kTooShort;
   if (!has_right_sum(frame)) return Refusal::kBadChecksum;

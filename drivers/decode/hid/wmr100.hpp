@@ -41,14 +41,14 @@ inline constexpr std::size_t kWmr100LongestFrame = 17;
 /// The report that starts the console's sending (without report id).
 inline constexpr std::array<std::uint8_t, 8> kWmr100Start = {0x20, 0x00, 0x08, 0x01, 0x00, 0x00, 0x00, 0x00};
 
-/// The valid bytes of one input report, which may be empty. A count beyond the report is clamped to it. It points into
+/// The valid bytes of one input report, which can be empty. A count beyond the report is clamped to it. It points into
 /// `report`. Thread-safe and realtime-safe: yes.
 ByteSpan wmr100_report_bytes(ByteSpan report) noexcept;
 
-/// Where in the stream we are; its owner keeps one for each time that the device was opened, and looks at nothing in
-/// it.
+/// The position in the stream; its owner keeps one for each time that the device was opened, and does not use its
+/// members.
 struct Wmr100Stream {
-  std::array<std::uint8_t, kWmr100LongestFrame + 1> frame{};  ///< and the first ff behind it
+  std::array<std::uint8_t, kWmr100LongestFrame + 1> frame{};  ///< and the first ff after it
   std::size_t size = 0;
   bool is_skipping = false;    ///< the rest of this frame is ignored
   bool was_ff = false;         ///< the last byte was ff

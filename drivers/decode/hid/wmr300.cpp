@@ -29,7 +29,7 @@ std::optional<double> wmr300_number(ByteSpan packet, std::size_t at) {
   return big_endian_16(packet, at);
 }
 
-/// The same of a number that may be below zero.
+/// The same for a number that can be negative.
 std::optional<double> wmr300_signed_number(ByteSpan packet, std::size_t at) {
   if (packet[at] == kWmr300NoData) return std::nullopt;
   return static_cast<std::int16_t>(big_endian_16(packet, at));
@@ -48,7 +48,7 @@ std::optional<double> tenths(std::optional<double> number) {
 }  // namespace
 
 Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept {
-  // The wind's, whole and undamaged?
+  // Refuses packets that are not the wind's, incomplete or damaged.
   if (packet.empty()) return Refusal::kTooShort;
   if (packet[0] != kWmr300Wind) return Refusal::kNotMine;
   if (packet.size() < kWmr300WindPacket) return Refusal::kTooShort;

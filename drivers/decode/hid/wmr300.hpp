@@ -54,17 +54,19 @@ Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept;
 /// realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_wmr300_quantities(ByteSpan packet) noexcept;
 
-/// Is this the console's reply to a heartbeat? If it does not send data yet, it needs encode_wmr300_begin() to start.
+/// Returns true for the console's reply to a heartbeat. If it does not send data yet, it needs encode_wmr300_begin() to
+/// start.
 bool is_wmr300_identity(ByteSpan packet) noexcept;
 
 /// The packet that makes the console that replied with `identity` send data; is_wmr300_identity() holds for it.
 std::array<std::uint8_t, 6> encode_wmr300_begin(ByteSpan identity) noexcept;
 
-/// Is the packet, of any kind, complete and undamaged? Data packets end with a sum; of others only the head is checked.
-/// Thread-safe and realtime-safe: yes.
+/// Returns true if the packet, of any kind, is complete and undamaged. Data packets end with a sum; of others only the
+/// head is checked. Thread-safe and realtime-safe: yes.
 bool is_sound_wmr300(ByteSpan packet) noexcept;
 
-/// Must this packet be acknowledged? Any data packet, also one that decode_wmr300() refuses as kNotMine.
+/// Returns true if this packet must be acknowledged: any data packet, also one that decode_wmr300() refuses as
+/// kNotMine.
 bool wants_wmr300_acknowledgement(ByteSpan packet) noexcept;
 
 /// The acknowledgement of `packet`, for which wants_wmr300_acknowledgement() holds.

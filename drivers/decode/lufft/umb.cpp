@@ -14,7 +14,7 @@ constexpr std::uint8_t kEndOfTransmission = 0x04;
 constexpr std::uint8_t kVersion = 0x10;
 constexpr std::uint8_t kOneChannel = 0x23;
 constexpr std::uint8_t kSeveralChannels = 0x2F;
-/// Of a frame, besides what its length counts.
+/// Of a frame, in addition to the bytes that its length counts.
 constexpr std::size_t kFrameOverhead = 12;
 /// The command, its version and the status.
 constexpr std::size_t kMinReply = 3;
@@ -69,7 +69,7 @@ std::optional<UmbChannel> channel_of(std::uint8_t status, ByteSpan bytes) {
   return channel;
 }
 
-/// What follows the status of a reply to 2Fh.
+/// The part after the status of a reply to 2Fh.
 std::optional<Refusal> read_channels(ByteSpan bytes, UmbReply& reply) {
   if (bytes.empty()) return Refusal::kMalformed;
   const std::size_t count = bytes[0];

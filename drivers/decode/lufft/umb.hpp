@@ -39,14 +39,14 @@ namespace yuragi::drivers::decode::lufft {
 // Numbers have their low byte first. A status other than 0 means that there is no value: 24h the device does not have
 // the channel, 28h it is not ready, 54h no valid data, 55h it cannot measure in this weather.
 
-/// The address of who asks: of class 15, with any id.
+/// The address of the requester: of class 15, with any id.
 inline constexpr std::uint16_t kUmbController = 0xF001;
 constexpr bool is_umb_controller(std::uint16_t address) noexcept {
   return (address >> 12U) == 15;
 }
-/// That a request may ask for; a frame has room for their values.
+/// Maximum number in a request; a frame has room for their values.
 inline constexpr std::size_t kMaxUmbChannels = 20;
-/// With the 210 bytes that a command may have.
+/// With the maximum of 210 bytes for a command.
 inline constexpr std::size_t kMaxUmbFrame = 224;
 
 namespace umb_channel {
@@ -58,11 +58,11 @@ inline constexpr std::uint16_t kFastSpeed = 401;         ///< m/s, each second; 
 inline constexpr std::uint16_t kMaxSpeed = 440;          ///< m/s, of the device's own recent past
 inline constexpr std::uint16_t kDirection = 500;         ///< degrees, as kSpeed
 inline constexpr std::uint16_t kFastDirection = 501;     ///< degrees, as kFastSpeed
-inline constexpr std::uint16_t kRainTotal = 620;         ///< mm, since it was set back
+inline constexpr std::uint16_t kRainTotal = 620;         ///< mm, since the last reset
 inline constexpr std::uint16_t kRainRate = 820;          ///< mm/h
 }  // namespace umb_channel
 
-/// All of them: what one exchange asks for.
+/// All of them: requested together in one exchange.
 inline constexpr std::array kUmbChannels = {
     umb_channel::kFastSpeed, umb_channel::kSpeed,          umb_channel::kFastDirection, umb_channel::kDirection,
     umb_channel::kMaxSpeed,  umb_channel::kAirTemperature, umb_channel::kPressure,      umb_channel::kRelativeHumidity,
@@ -78,7 +78,7 @@ constexpr std::uint16_t umb_address(unsigned device_class, std::uint8_t id) noex
 /// CRC-CCITT: polynomial 0x1021, from 0xFFFF on, lowest bit first. Thread-safe and realtime-safe: yes.
 std::uint16_t umb_checksum(ByteSpan bytes) noexcept;
 
-/// Is a frame that begins so one of these, as far as it has come? Thread-safe and realtime-safe: yes.
+/// Returns true if these first bytes can be the beginning of such a frame. Thread-safe and realtime-safe: yes.
 bool begins_umb_frame(ByteSpan beginning) noexcept;
 
 /// How long it is, by its beginning of at least 7 bytes. Thread-safe and realtime-safe: yes.

@@ -20,7 +20,7 @@ bool has_right_end(ByteSpan frame) {
 std::optional<UmbAssembler::Frame> UmbAssembler::next(ByteSpan& bytes) noexcept {
   drop_front(std::exchange(taken_, 0));
   while (true) {
-    // A damaged length can have hidden a whole frame, so that what is left may hold one already.
+    // A damaged length can have hidden a whole frame, so that the rest can already contain one.
     if (size_ >= kHeaderWithLength && size_ >= umb_frame_size(bytes_)) {
       const ByteSpan frame = ByteSpan(bytes_).first(umb_frame_size(bytes_));
       if (has_right_end(frame)) {
@@ -29,7 +29,7 @@ std::optional<UmbAssembler::Frame> UmbAssembler::next(ByteSpan& bytes) noexcept 
         return frame;
       }
       drop_front(1);
-      is_outside_ = true;  // what follows up to the next beginning is the rest of this one
+      is_outside_ = true;  // bytes up to the next beginning belong to this one
       return Refusal::kBadChecksum;
     }
     if (bytes.empty()) return std::nullopt;
@@ -49,7 +49,7 @@ bool UmbAssembler::cut() noexcept {
   return was_begun;
 }
 
-/// So many bytes, and those that follow up to the next beginning of a frame, which may be all.
+/// Drops `count` bytes, and those up to the next beginning of a frame, or all.
 void UmbAssembler::drop_front(std::size_t count) noexcept {
   while (count < size_ && !begins_umb_frame(ByteSpan(bytes_).subspan(count, size_ - count))) ++count;
   std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(count), bytes_.begin() + static_cast<std::ptrdiff_t>(size_),

@@ -10,7 +10,7 @@
 
 namespace yuragi::drivers::decode::marine {
 
-// What the text formats of NMEA 2000 frames have in common. Nothing here allocates, throws or keeps state. Thread-safe
+// The common part of the text formats of NMEA 2000 frames. Nothing here allocates, throws or keeps state. Thread-safe
 // and realtime-safe: yes.
 
 /// One CAN frame.
@@ -31,7 +31,7 @@ BusIdentifier bus_identifier_of(std::uint32_t identifier) noexcept;
 /// The wind in a frame. Refusals, in this order: kNotMine (another PGN), then as decode_wind_data().
 Result<BusWind, Refusal> decode_bus_frame(const BusFrame& frame) noexcept;
 
-/// A hexadecimal number of exactly so many digits, at most 8.
+/// A hexadecimal number of exactly this many digits, at most 8.
 std::optional<std::uint32_t> hex_number(std::string_view text, std::size_t digits) noexcept;
 
 }  // namespace yuragi::drivers::decode::marine

@@ -28,7 +28,7 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-/// What follows the interface's name.
+/// The text after the interface's name.
 std::string_view after_interface(std::string_view line) {
   std::string_view rest = trimmed(line);
   if (rest.starts_with('(')) take_word(rest);
@@ -54,7 +54,7 @@ Result<BusFrame, Refusal> with_digits(BusFrame frame, std::string_view digits) {
   return frame;
 }
 
-/// "[8]  64 1E 01 C8 F1 FA FF FF", and what may follow: the same as text, in quotes, or "ERRORFRAME".
+/// "[8] 64 1E 01 C8 F1 FA FF FF", and possibly: the same as text, in quotes, or "ERRORFRAME".
 Result<BusFrame, Refusal> with_words(BusFrame frame, std::string_view words) {
   const std::string_view count = take_word(words);
   if (count.size() == 4) return Refusal::kNotMine;  // [08]: CAN FD

@@ -21,11 +21,11 @@ namespace yuragi::drivers::decode::marine {
 /// The state of a CAN controller, as it reports it.
 enum class ControllerState : std::uint8_t {
   kGood,
-  kPassive,  ///< so many errors that it must not disturb others any more; it still receives
-  kBusOff,   ///< so many that it takes no part in the bus
+  kPassive,  ///< after so many errors that it must not disturb others any more; it still receives
+  kBusOff,   ///< after so many errors that it does not take part in the bus
 };
 
-/// Does it begin as such a line does?
+/// Returns true if it begins like such a line.
 bool looks_like_candump(std::string_view line) noexcept;
 
 /// Returns the controller's state in a line; nullopt if it is another line. Thread-safe and realtime-safe: yes.

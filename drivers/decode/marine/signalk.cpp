@@ -53,20 +53,20 @@ std::string source_of(const SignalKJson& update) {
   return named;
 }
 
-/// In [0, 360); empty for what is no angle.
+/// In [0, 360); nullopt if it is not an angle.
 std::optional<double> turned_deg(double angle_rad) {
   const double angle_deg = angle_rad / kRadPerDeg;
   return wrapped_direction_deg(angle_deg < 0.0 ? angle_deg + 360.0 : angle_deg);
 }
 
-/// What was found in the values so far.
+/// The values found so far.
 struct WindFinds {
   bool has_path = false;
   bool has_value = false;
   bool is_impossible = false;
 };
 
-/// False: it is not this format.
+/// Returns false if it is not this format.
 bool take_value(const SignalKJson& entry, SignalKValues& values, WindFinds& finds) {
   if (!entry.is_object()) return false;
   const auto path = entry.find("path");
@@ -116,7 +116,7 @@ Result<SignalKDelta, Refusal> decode_signalk(std::string_view line) {
   for (const SignalKJson& update : *updates) {
     if (!update.is_object()) return Refusal::kMalformed;
     const auto values = update.find("values");
-    if (values == update.end()) continue;  // what the values mean ("meta")
+    if (values == update.end()) continue;  // descriptions of the values ("meta")
     if (!values->is_array()) return Refusal::kMalformed;
     SignalKUpdate said = {.source = source_of(update), .timestamp = shown_text(update, "timestamp"), .values = {}};
     for (const SignalKJson& entry : *values) {

@@ -67,7 +67,7 @@ std::optional<SignalKHello> signalk_hello(std::string_view line);
 /// impossible angle is left out. Never throws for any line, except if memory runs out. Thread-safe: yes.
 Result<SignalKDelta, Refusal> decode_signalk(std::string_view line);
 
-/// A wind that values of one moment make, in one frame.
+/// The wind from values of one moment, in one frame.
 struct SignalKWind {
   std::string_view frame;  ///< "north", "magnetic", "apparent", "ground" or "water"
   DecodedWind wind;

@@ -23,14 +23,14 @@ namespace yuragi::drivers::decode::marine {
 
 inline constexpr std::uint32_t kWindDataPgn = 130306;
 
-/// What the angle counts from, by its number in the frame.
+/// The reference of the angle, by its number in the frame.
 enum class WindDataReference : std::uint8_t {
   kNorth,     ///< geographic north
   kMagnetic,  ///< magnetic north
   kApparent,  ///< the bow, of the wind that is felt on board
   kBoat,      ///< the bow, with the vessel's motion over the ground taken out
   kWater,     ///< the bow, with the vessel's motion through the water taken out
-  kUnknown,   ///< not sent (7): for a device that stands still its own mark
+  kUnknown,   ///< not sent (7): for a fixed device its own mark
 };
 inline constexpr std::array<std::string_view, 6> kWindDataReferenceNames = {"north", "magnetic", "apparent",
                                                                             "boat",  "water",    "unknown"};

@@ -13,7 +13,7 @@ namespace yuragi::drivers::decode::marine {
 // Time; R: received from the bus, T: sent to it by a program; the CAN identifier (29 bits: priority, PGN, the sender's
 // address) and the data bytes in hexadecimal. There is no checksum. Source: YDNU-02 manual, appendix E.
 
-/// Does it begin as such a line does?
+/// Returns true if it begins like such a line.
 bool looks_like_yacht_devices(std::string_view line) noexcept;
 
 /// The wind in one line. Refusals, in this order: kTooShort (it ends before its identifier), kMalformed (not this

@@ -16,7 +16,7 @@ constexpr float kNoMicrophoneSays = 10.0F;
 /// The band above the wind's, by which automatic gain shows.
 constexpr double kHighFrom_hz = 1500.0;
 constexpr double kHighTo_hz = 6000.0;
-constexpr double kUsablePart = 0.45;  // of the rate: what lies above, the converter's filter takes away
+constexpr double kUsablePart = 0.45;  // of the rate: the converter's filter removes the frequencies above
 
 std::size_t segment_size(double rate_hz) {
   std::size_t size = 8;
@@ -50,7 +50,8 @@ MicAnalyser::MicAnalyser(const MicAnalyserOptions& options)
   }
   scale_ = 2.0 / (squares * size);
 
-  // Bands of a third of an octave, of one bin at least; the first bin would hold what is left of the mean.
+  // Bands of a third of an octave, with at least one bin; the first bin is left out because it contains the rest of the
+  // mean.
   const double top_hz = std::min(options.high_hz, kUsablePart * options.rate_hz);
   const auto bin_at = [&](double hz) { return static_cast<std::size_t>(std::max(1L, std::lround(hz / bin_hz))); };
   band_edges_.push_back(bin_at(options.low_hz));

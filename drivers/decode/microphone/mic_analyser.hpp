@@ -30,14 +30,14 @@ class MicAnalyser {
  public:
   explicit MicAnalyser(const MicAnalyserOptions& options);
 
-  /// What the blocks are of; the device's name is left to the caller.
+  /// The format of the blocks; the caller sets the device's name.
   const MicHello& hello() const noexcept { return hello_; }
 
   /// One frame, a sample a channel. Returns a block when that completes one; its time stamp and lost samples are the
   /// caller's to fill in. A sample that is not finite, or beyond ten times full scale, counts as 0 and as invalid.
   std::optional<MicBlock> add(std::span<const float> frame) noexcept;
 
-  /// After lost samples: the segment that was begun is dropped, since its ends do not belong together.
+  /// After lost samples: drops the present segment, because its parts do not belong together.
   void restart() noexcept;
 
  private:

@@ -25,13 +25,13 @@ constexpr std::size_t mic_pair_count(std::size_t channels) noexcept {
   return channels * (channels - 1) / 2;
 }
 
-/// What holds for a stream as long as it lasts.
+/// Constants of a stream.
 struct MicHello {
   double rate_hz = 0.0;
   std::uint8_t channels = 1;
   std::uint8_t bands = 1;
   std::array<std::uint16_t, kMicMaxBands> bins{};  ///< frequencies of the transform in each band
-  std::uint16_t high_bins = 0;  ///< likewise in the band above the wind's; 0: the rate is too low for one
+  std::uint16_t high_bins = 0;  ///< the same for the band above the wind's; 0: the rate is too low for one
   std::string device;           ///< for people
 
   bool operator==(const MicHello&) const = default;

@@ -33,7 +33,7 @@ double curve_speed(const MicCurve& curve, double level_db) {
   const auto& points = curve.points;
   if (points.empty()) return 0.0;
   if (points.size() == 1 || level_db <= points.front().level_db) return points.front().speed_m_s;
-  // The segment that holds the level; the last one holds what is above it.
+  // The segment that contains the level; the last one for higher levels.
   auto upper = std::ranges::lower_bound(points, level_db, {}, &MicLevelAndSpeed::level_db);
   if (upper == points.end()) --upper;
   const auto lower = upper - 1;
@@ -83,7 +83,7 @@ Parabola fit_parabola(Pairs pairs) {
     }
   }
   for (std::size_t i = 0; i < 3; ++i) {
-    rows[i][i] += 1e-9;  // two levels alone make a line, not a division by nothing
+    rows[i][i] += 1e-9;  // so that two levels give a line, and no division by zero
     for (std::size_t j = i + 1; j < 3; ++j) {
       const double factor = rows[j][i] / rows[i][i];
       for (std::size_t k = i; k < 4; ++k) rows[j][k] -= factor * rows[i][k];
@@ -133,7 +133,7 @@ std::optional<double> mic_level_db(const MicCalibration& calibration, double spe
     if (!(speed_m_s > 0.0)) return std::nullopt;
     return 10.0 * std::log10(std::pow(speed_m_s / law->gain_m_s, 2.0 * law->exponent) + noise_power);
   }
-  // The segment that rises through the speed; the last one holds what is above it.
+  // The segment that rises through the speed; the last one for higher speeds.
   const auto& points = std::get<MicCurve>(calibration).points;
   for (std::size_t upper = 1; upper < points.size(); ++upper) {
     const MicLevelAndSpeed& a = points[upper - 1];

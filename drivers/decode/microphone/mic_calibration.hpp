@@ -33,7 +33,7 @@ struct MicLevelAndSpeed {
 };
 
 /// Straight lines from point to point: at least two, levels rising, speeds never falling. Below the first point it is
-/// flat; above the last it goes on as steeply as it came. The noise of a calm is part of it.
+/// flat; above the last it continues with the same slope. The noise of a calm is part of it.
 struct MicCurve {
   std::vector<MicLevelAndSpeed> points;
 

@@ -106,8 +106,8 @@ double MicEstimator::coherence(std::size_t a, std::size_t b, std::size_t band) c
   return std::sqrt(std::max(0.0, (square * averages - 1.0) / (averages - 1.0)));
 }
 
-/// Do two channels carry the same signal, with any gains, in every band that has any power? One average alone looks so
-/// for any two.
+/// Returns true if two channels carry the same signal, with any gains, in every band with power. With a single average
+/// any two look so.
 bool MicEstimator::are_twins(std::size_t a, std::size_t b) const {
   bool have_power = false;
   for (std::size_t band = 0; band < hello_.bands; ++band) {

@@ -22,7 +22,8 @@ struct MicEstimatorOptions {
   /// Of a calm, dB re full scale; nullopt: found while running (MicNoiseFloor). A curve needs none.
   std::optional<double> noise_floor_db = std::nullopt;
   double noise_memory_s = 86400.0;
-  /// Is what all microphones record alike taken for sound, not wind? One microphone alone cannot distinguish them.
+  /// Treats signals that all microphones record equally as sound, not wind. One microphone alone cannot distinguish
+  /// them.
   bool ignores_sound = true;
   double window_s = 1.0;            ///< over which level and coherence are taken
   std::vector<double> faces_deg{};  ///< where each microphone faces; empty: no direction
@@ -33,10 +34,10 @@ struct MicEstimatorOptions {
 /// The estimate after one block.
 struct MicEstimate {
   double speed_m_s = 0.0;
-  std::optional<double> direction_deg;  ///< where it comes from, clockwise from north, [0, 360)
+  std::optional<double> direction_deg;  ///< wind direction, clockwise from north, [0, 360)
   std::optional<double> gust_m_s;       ///< strongest mean over 3 s of the last 10 min (WMO-No. 8, 2021, I.5)
   double direction_confidence = 0.0;    ///< 0 to 1
-  double level_db = 0.0;                ///< of the wind in its band, without sound; what a calibration is made of
+  double level_db = 0.0;                ///< of the wind in its band, without sound; used for calibration
   double floor_db = 0.0;                ///< the level used for a calm; -200: none
   double sound_part = 0.0;              ///< of the band's power that was taken for sound, 0 to 1
   unsigned silent_channels = 0;         ///< a bit for each that is digitally silent
@@ -70,7 +71,7 @@ class MicEstimator {
 
   const MicHello& hello() const noexcept { return hello_; }
 
-  /// The stream begins anew: the window is emptied; what is known of the microphone is kept.
+  /// The stream starts again: empties the window; the knowledge of the microphone is kept.
   void restart() noexcept;
 
  private:

@@ -56,7 +56,7 @@ class PayloadWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Reads what is there; 0 beyond the end, which is remembered.
+/// Reads the payload; returns 0 beyond the end, and remembers that.
 class PayloadReader {
  public:
   explicit PayloadReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -210,7 +210,7 @@ void MicFrameReader::clear() {
 }
 
 std::optional<MicFrameReader::Item> MicFrameReader::next() {
-  // What does not begin with the mark, or with the beginning of one, is no frame: it is skipped up to the next.
+  // Bytes that are not the mark, or its beginning, are skipped up to the next mark.
   const auto begins_a_mark = [this](const std::deque<std::uint8_t>::iterator& at) {
     const auto rest = std::min<std::ptrdiff_t>(waiting_.end() - at, kMark.size());
     return std::equal(at, at + rest, kMark.begin());
@@ -233,7 +233,7 @@ std::optional<MicFrameReader::Item> MicFrameReader::next() {
   const auto size = fields.take<std::uint32_t>();
   const auto checksum = fields.take<std::uint32_t>();
   if (version != kVersion || kind < kHelloKind || kind > kTroubleKind || size > kMicMaxPayload) {
-    waiting_.pop_front();  // not a header after all: look for the mark behind this one
+    waiting_.pop_front();  // not a header after all: search for the mark after this one
     return Item{Refusal::kMalformed, {}};
   }
   if (waiting_.size() < kHeader + size) return std::nullopt;
@@ -242,7 +242,7 @@ std::optional<MicFrameReader::Item> MicFrameReader::next() {
   std::vector<std::uint8_t> bytes(waiting_.begin(), end);
   const std::span<const std::uint8_t> payload = std::span(bytes).subspan(kHeader);
   if (mic_checksum(payload) != checksum) {
-    waiting_.pop_front();  // the size may be what is wrong, and a frame may begin within it
+    waiting_.pop_front();  // the size can be wrong, and a frame can begin within it
     return Item{Refusal::kBadChecksum, std::move(bytes)};
   }
   waiting_.erase(waiting_.begin(), end);

@@ -44,7 +44,7 @@ struct MicTrouble {
 
 using MicFrame = std::variant<MicHello, MicBlock, MicTrouble>;
 
-/// A frame as bytes. A text is cut to what fits.
+/// A frame as bytes. A text is cut to the maximum size.
 std::vector<std::uint8_t> encode_mic_frame(const MicHello& hello);
 /// `hello` determines the size of the block.
 std::vector<std::uint8_t> encode_mic_frame(const MicBlock& block, const MicHello& hello);
@@ -71,7 +71,7 @@ class MicFrameReader {
   /// Forgets everything, for a new worker.
   void clear();
 
-  /// Bytes that are no whole frame yet; after next() has returned nothing, no more than one frame.
+  /// Bytes of incomplete frames; after next() has returned nothing, at most one frame.
   std::size_t waiting_bytes() const noexcept { return waiting_.size(); }
 
  private:

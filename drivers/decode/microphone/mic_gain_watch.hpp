@@ -14,7 +14,7 @@ struct RunningPair {
   double covariance = 0.0;
   double measured_s = 0.0;
 
-  /// Values that held for `duration_s`; what is older than `memory_s` fades.
+  /// Adds values that held for `duration_s`; values older than `memory_s` fade.
   void add(double a, double b, double duration_s, double memory_s) noexcept;
   /// -1 to 1; 0 if one of them does not move.
   double correlation() const noexcept;

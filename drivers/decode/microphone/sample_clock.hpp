@@ -10,11 +10,11 @@ namespace yuragi::drivers::decode::microphone {
 /// Times are nanoseconds of any steady clock. Thread-safe: no. Realtime-safe: yes.
 class SampleClock {
  public:
-  /// `rate_hz`: what the device calls its rate; the true one is found.
+  /// `rate_hz`: the device's nominal rate; the true one is measured.
   explicit SampleClock(double rate_hz) noexcept : nominal_ns_(1e9 / rate_hz), sample_ns_(nominal_ns_) {}
 
   /// The buffer that ends before sample `end_sample` arrived at `time_ns`. Returns when that was, smoothed. After a gap
-  /// (samples that go back, or a time that is off by more than half a second) it begins anew.
+  /// (samples that go back, or a time that is off by more than half a second) it starts again.
   std::int64_t add(std::uint64_t end_sample, std::int64_t time_ns) noexcept;
 
   /// Duration of a sample as it has turned out, ns.
@@ -26,7 +26,7 @@ class SampleClock {
   bool is_locked_ = false;
   std::uint64_t last_sample_ = 0;
   std::int64_t last_ns_ = 0;  ///< smoothed
-  double fraction_ns_ = 0.0;  ///< what the rounding of last_ns_ left over
+  double fraction_ns_ = 0.0;  ///< remainder of the rounding of last_ns_
   double locked_s_ = 0.0;
 };
 

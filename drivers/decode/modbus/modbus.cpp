@@ -26,7 +26,7 @@ RefusedReply refuse(Refusal why, std::uint8_t exception = 0) {
   return {why, exception};
 }
 
-/// What both framings carry: function, byte count, registers; or function with the high bit, exception code.
+/// The common part of both framings: function, byte count, registers; or function with the high bit, exception code.
 DecodeResult decode_pdu(const Request& request, Bytes pdu) {
   if (pdu.size() < 2) return refuse(Refusal::kTooShort);
   if (pdu[0] == (request.function | kExceptionBit)) {
@@ -45,7 +45,7 @@ DecodeResult decode_pdu(const Request& request, Bytes pdu) {
   return registers;
 }
 
-/// The sum over a message and the sum behind it is 0.
+/// Returns true if the sum over a message including its own sum is 0.
 bool has_right_crc(Bytes message) {
   return modbus_crc(message) == 0;
 }
@@ -75,7 +75,7 @@ std::array<std::uint8_t, 8> encode_rtu(const Request& request) noexcept {
 }
 
 DecodeResult decode_tcp(const Request& request, Bytes message) noexcept {
-  // The header: is this Modbus, whole, and for us?
+  // The header: refuses messages that are not Modbus, incomplete, or for others.
   if (message.size() < kTcpHeader) return refuse(Refusal::kTooShort);
   const std::size_t whole = kTcpLengthFrom + big_endian(message, 4);
   if (big_endian(message, 2) != 0 || whole < kTcpHeader || whole > kModbusMaxMessage) {
@@ -96,7 +96,7 @@ DecodeResult decode_rtu(const Request& request, Bytes message) noexcept {
 
   if (message.size() < kShortest) return refuse(Refusal::kTooShort);
   if (!has_right_crc(message)) {
-    // Cut off, or damaged? A reply to this request that ends too early is the former.
+    // Cut off, or damaged: a reply to this request that ends too early is cut off.
     const bool is_cut =
         message[0] == request.unit && message[1] == request.function && message.size() < 3U + message[2] + kCrc;
     return refuse(is_cut ? Refusal::kTooShort : Refusal::kBadChecksum);

@@ -23,7 +23,7 @@ inline constexpr std::size_t kModbusMaxRegisters = 125;
 /// How a message is wrapped on its way.
 enum class Framing : std::uint8_t {
   kTcp,  ///< transaction id, protocol id, length, unit id in front
-  kRtu,  ///< slave id in front, CRC behind
+  kRtu,  ///< slave id before the message, CRC after it
 };
 
 /// A request for registers.
@@ -31,17 +31,17 @@ struct Request {
   std::uint16_t transaction = 0;  ///< TCP only
   std::uint8_t unit = 1;          ///< slave id
   std::uint8_t function = 3;      ///< 3: holding registers; 4: input registers
-  std::uint16_t address = 0;      ///< of the first register, as it goes on the wire
+  std::uint16_t address = 0;      ///< of the first register, as sent
   std::uint16_t count = 1;        ///< registers, 1 to kModbusMaxRegisters
 };
 
-/// The request as it goes on a TCP connection.
+/// The request as sent on a TCP connection.
 std::array<std::uint8_t, 12> encode_tcp(const Request& request) noexcept;
 
-/// The request as it goes on a serial line, still without its CRC.
+/// The request as sent on a serial line, without its CRC.
 std::array<std::uint8_t, 6> encode_rtu_without_crc(const Request& request) noexcept;
 
-/// The request as it goes on a serial line, its CRC behind it.
+/// The request as sent on a serial line, with its CRC.
 std::array<std::uint8_t, 8> encode_rtu(const Request& request) noexcept;
 
 /// The content of a reply.
@@ -76,7 +76,7 @@ std::uint16_t modbus_crc(std::span<const std::uint8_t> bytes) noexcept;
 /// "illegal data address" for 2; "unknown exception" for a code that the specification does not have.
 std::string_view modbus_exception_name(std::uint8_t code) noexcept;
 
-/// Is this exception a gateway's report that the slave behind it does not reply?
+/// Returns true if this exception is a gateway's report that the slave does not reply.
 bool is_gateway_silence(std::uint8_t exception) noexcept;
 
 }  // namespace yuragi::drivers::decode::modbus

@@ -26,8 +26,7 @@ std::uint32_t ordered_bits(const Quantity& quantity, std::span<const std::uint16
   return (high << 16U) | low;
 }
 
-/// The whole number that the bits stand for (for f32 the bits themselves): what a profile's list of invalid values
-/// holds.
+/// The integer of the bits (for f32 the bits themselves), as in a profile's list of invalid values.
 std::int64_t whole_number(RegisterType type, std::uint32_t bits) {
   switch (type) {
     case RegisterType::kI16:

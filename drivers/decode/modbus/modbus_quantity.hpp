@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 3> kDirectionMapNames = {"degrees"
 struct Quantity {
   std::uint8_t slave = 1;
   std::uint8_t function = 3;
-  std::uint16_t address = 0;  ///< as it goes on the wire
+  std::uint16_t address = 0;  ///< as sent
   RegisterType type = RegisterType::kU16;
   ByteOrder order = ByteOrder::kABCD;
   double scale = 1.0;  ///< value = raw * scale + offset, in `unit`

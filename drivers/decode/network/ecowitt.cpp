@@ -72,7 +72,7 @@ std::uint8_t length_of_item(std::uint8_t id) {
   return kUnknownLength;
 }
 
-/// Where the values of a reply stand, by their ids.
+/// The positions of a reply's values, by their ids.
 class Items {
  public:
   /// Reads them up to the first of unknown id. Returns nullopt if one is cut off or comes twice.

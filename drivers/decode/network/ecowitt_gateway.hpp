@@ -29,8 +29,8 @@ struct EcowittGateway {
   std::string name;        ///< can be shown; at most 64 characters
 };
 
-/// An answer, or what is wrong with it: kTooShort, kMalformed, kNotMine (another command's), kBadChecksum. The IPv4
-/// address in it is not read: the sender's address is used. Thread-safe: yes.
+/// A reply, or the error in it: kTooShort, kMalformed, kNotMine (another command's), kBadChecksum. The IPv4 address in
+/// it is not read: the sender's address is used. Thread-safe: yes.
 Result<EcowittGateway, Refusal> decode_ecowitt_gateway(ByteSpan answer);
 
 }  // namespace yuragi::drivers::decode::network

@@ -86,7 +86,7 @@ class PushFields {
     if (number && *number == kNoPushValue) return std::optional<double>();
     return number;
   }
-  /// Empty: missing, or no number.
+  /// Nullopt if it is missing, or not a number.
   std::optional<double> number(PushName name, double unit) const {
     const auto number = checked_number(name);
     return number && *number ? std::optional(**number * unit) : std::nullopt;
@@ -140,7 +140,7 @@ std::optional<char> byte_of_hex(std::string_view digits) {
   return static_cast<char>(byte);
 }
 
-/// "a+b%20c" as "a b c"; what is not encoded so stays as it is.
+/// "a+b%20c" as "a b c"; other text is unchanged.
 std::string percent_decoded(std::string_view text) {
   std::string decoded;
   for (std::size_t at = 0; at < text.size(); ++at) {
@@ -151,7 +151,7 @@ std::string percent_decoded(std::string_view text) {
   return decoded;
 }
 
-bool speaks_of_a_secret(std::string_view part) {
+bool names_a_secret(std::string_view part) {
   std::string words = percent_decoded(part);
   std::ranges::transform(words, words.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -201,7 +201,7 @@ std::string without_push_secrets(std::string_view form) {
   for_each_part(form, [&](std::string_view part) {
     if (!is_first) shown += '&';
     is_first = false;
-    if (!speaks_of_a_secret(part)) {
+    if (!names_a_secret(part)) {
       shown += part;
       return true;
     }

@@ -61,8 +61,8 @@ PushTarget split_push_target(std::string_view target) noexcept;
 /// wind in it). There is no checksum but TCP's. Thread-safe and realtime-safe: yes.
 Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept;
 
-/// Any bytes as they may be shown and recorded: each part between '&' that speaks of a key, a password or a token is
-/// "(secret)", except the names PASSKEY and PASSWORD. What is left of a form can be decoded. Thread-safe: yes.
+/// Any bytes as they may be shown and recorded: each part between '&' that mentions a key, a password or a token is
+/// replaced by "(secret)", except the names PASSKEY and PASSWORD. The rest of a form can be decoded. Thread-safe: yes.
 std::string without_push_secrets(std::string_view form);
 
 /// A value of a form as text for people: decoded, visible ASCII alone, at most 40 characters. Thread-safe: yes.

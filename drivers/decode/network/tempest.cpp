@@ -18,7 +18,7 @@ constexpr double kMinutesInHour = 60.0;
 /// No value stands there.
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 
-/// Where the values stand in an observation of one kind of station.
+/// The positions of the values in an observation of one kind of station.
 struct ObservationLayout {
   std::string_view type;
   std::size_t size;

@@ -29,7 +29,7 @@ namespace yuragi::drivers::decode::network {
 /// The hub's messages are shorter than 1 KiB.
 inline constexpr std::size_t kMaxTempestMessage = 4096;
 
-/// What a message is about.
+/// The subject of a message.
 enum class TempestKind : std::uint8_t {
   kRapidWind,    ///< the wind of a moment
   kObservation,  ///< the last minute or minutes: mean wind, gust, and what else the station measures
@@ -61,7 +61,8 @@ class TempestWinds {
   /// False for one that has been heard already: a machine with two interfaces in the hub's network hears everything
   /// twice. Not for kOther.
   bool is_new(const TempestMessage& message) noexcept;
-  /// Of one that is new: an observation is the wind if no rapid wind has come since the one before.
+  /// Returns true for a new message: an observation is the wind if no rapid wind was received since the observation
+  /// before.
   bool is_wind(const TempestMessage& message) noexcept;
 
  private:

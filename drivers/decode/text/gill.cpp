@@ -25,7 +25,7 @@ bool is_signed(std::string_view field) {
   return !field.empty() && (field.front() == '+' || field.front() == '-');
 }
 
-/// What stands between STX and ETX, its checksum proven.
+/// The text between STX and ETX, with a valid checksum.
 Result<std::string_view, Refusal> gill_body_of(const GillOptions& options, std::string_view line) {
   line = trimmed(line);
   if (const std::size_t start = line.rfind(kStx); start != std::string_view::npos) line.remove_prefix(start + 1);

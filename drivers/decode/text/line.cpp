@@ -14,7 +14,7 @@ namespace {
 
 using LineValue = Result<std::optional<double>, Refusal>;
 
-/// A value as it stands in the line, and the unit behind it.
+/// A value's text, and the unit after it.
 struct LineText {
   std::string_view number;
   std::string_view unit;
@@ -39,7 +39,7 @@ bool is_unit(std::string_view word) {
   return unit_named(word, false) || unit_named(word, true);
 }
 
-bool says_nothing(std::string_view text) {
+bool is_missing_value(std::string_view text) {
   return text.empty() || text == "nan" || text == "NaN" || text == "NAN" || text == "null";
 }
 
@@ -59,7 +59,7 @@ LineValue scaled(const LineOptions& options, const LineQuantity& quantity, doubl
 }
 
 LineValue value_of(const LineOptions& options, const LineQuantity& quantity, const LineText& text, bool is_direction) {
-  if (says_nothing(text.number)) return std::optional<double>();
+  if (is_missing_value(text.number)) return std::optional<double>();
   const auto number = parse_number(text.number);
   if (!number) return number.error();
   const std::optional<double> unit = unit_named(text.unit, is_direction);
@@ -67,7 +67,7 @@ LineValue value_of(const LineOptions& options, const LineQuantity& quantity, con
   return scaled(options, quantity, **number, unit);
 }
 
-/// The next piece of `rest` that stands between separators; empty at the end.
+/// The next piece of `rest` between separators; empty at the end.
 std::string_view next_piece(std::string_view& rest, std::string_view separators) {
   const std::size_t start = rest.find_first_not_of(separators);
   if (start == std::string_view::npos) {
@@ -158,7 +158,7 @@ Result<LineValues, Refusal> values_of_texts(const LineOptions& options, const Li
   return LineValues{*speed_m_s, *direction_deg, *gust_m_s};
 }
 
-/// What a JSON object has at a key, or at a JSON pointer; nullptr: no such place.
+/// The value in a JSON object at a key, or at a JSON pointer; nullptr if it does not exist.
 const nlohmann::json* find_in(const nlohmann::json& object, const std::string& key) {
   if (!key.starts_with('/')) return object.contains(key) ? &object[key] : nullptr;
   const nlohmann::json::json_pointer pointer(key);

@@ -41,10 +41,10 @@ class LineAssembler {
   /// call. Refusals: kMalformed (longer than the longest), kTooShort (cut off by the STX of the next one).
   std::optional<Line> next(std::span<const std::uint8_t>& bytes) noexcept;
 
-  /// What has come since the last end: the last line of a file or datagram. Leaves nothing behind.
+  /// Returns the bytes since the last line end: the last line of a file or datagram. Clears them.
   std::optional<Line> finish() noexcept;
 
-  /// Forgets what has come, after a connection was lost.
+  /// Drops the bytes received so far, after a connection was lost.
   void clear() noexcept;
 
  private:
@@ -52,7 +52,7 @@ class LineAssembler {
 
   std::vector<char> text_;  // of the longest line's size
   std::size_t size_ = 0;
-  bool is_skipping_ = false;  // an overlong line has been refused, and goes on
+  bool is_skipping_ = false;  // an overlong line was refused, and has not ended
   LineEnding ending_;
 };
 

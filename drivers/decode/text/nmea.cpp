@@ -21,7 +21,7 @@ std::string_view capital(std::string_view field) {
   return is_small ? kCapitals.substr(static_cast<std::size_t>(field[0] - 'a'), 1) : field;
 }
 
-/// Is a word in capitals the same, ignoring case?
+/// Returns true if a word equals one in capitals, ignoring case.
 bool is_word(std::string_view word, std::string_view capitals) {
   if (word.size() != capitals.size()) return false;
   for (std::size_t i = 0; i < word.size(); ++i) {
@@ -43,7 +43,7 @@ std::optional<double> sentence_unit(std::string_view field) {
   return letter == "S" ? kMetresPerSecondPerMph : metres_per_second_of(letter);
 }
 
-/// The speed in field `at`, whose unit stands in the field behind it.
+/// The speed in field `at`, whose unit is in the next field.
 NmeaValue speed_with_unit(const TextFields& fields, std::size_t at) {
   const NmeaValue number = parse_number(fields[at]);
   if (!number || !*number) return number;
@@ -129,7 +129,7 @@ NmeaResult decode_side(const TextFields& fields, WindReference reference) {
   return with_direction(wind, wrapped_direction_deg(is_port ? 360.0 - **angle_deg : **angle_deg));
 }
 
-/// The statistic (least, mean, greatest) that an XDR quadruple's id stands for.
+/// The statistic (minimum, mean, maximum) of an XDR quadruple, by its id.
 enum class XdrRole : std::uint8_t { kNone, kLeast, kMean, kGreatest };
 
 /// Only a number is one: a boat's heel is an angle too, and its id is HEEL.
@@ -150,8 +150,8 @@ XdrRole xdr_role(std::string_view id, int first_id) {
   }
 }
 
-/// Are these quadruples, each of a type of one letter? Fields after a lost one have moved up, and are not quadruples.
-/// What is behind the last one must be empty.
+/// Returns true if these are quadruples, each with a type of one letter. If a field is lost, the following ones move
+/// up, and are not quadruples. The text after the last one must be empty.
 bool are_xdr_quadruples(const TextFields& fields) {
   std::size_t at = 1;
   for (; at + 3 < fields.count; at += 4) {
@@ -165,7 +165,7 @@ bool are_xdr_quadruples(const TextFields& fields) {
   return true;
 }
 
-/// Least, mean and greatest of one quantity, as far as a sentence has them.
+/// Minimum, mean and maximum of one quantity, as far as a sentence has them.
 struct XdrStatistics {
   std::optional<double> least;
   std::optional<double> mean;

@@ -33,7 +33,7 @@ struct NmeaOptions {
 
 /// The wind in one line, without its line end, or why there is none: as sentence_of() refuses, then kNotMine (another
 /// sentence, or XDR without wind), kMalformed (fields, units or letters that the sentence does not have, or no status
-/// where that is refused), kInvalid (by its status, or without a value), kImplausible. One half may be empty; an
+/// where that is refused), kInvalid (by its status, or without a value), kImplausible. One half can be empty; an
 /// impossible direction is left empty if there is a speed beside it. If a sentence has the speed in several units, m/s
 /// is taken first. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;

@@ -40,7 +40,8 @@ Result<DecodedWind, Refusal> decode_wxt(const WxtOptions& options, std::string_v
 /// realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_wxt_quantities(const WxtOptions& options, std::string_view line) noexcept;
 
-/// Does the line look like a data message of these devices: "0R1,Dn=..."? Thread-safe and realtime-safe: yes.
+/// Returns true if the line looks like a data message of these devices: "0R1,Dn=...". Thread-safe and realtime-safe:
+/// yes.
 bool looks_like_wxt(std::string_view line) noexcept;
 
 /// The request for a wind message with a checksum from the device of that address: "0r1Goe" CR LF.

@@ -8,7 +8,7 @@
 namespace yuragi::drivers::decode::usb {
 namespace {
 
-/// How much sooner than measured a value may have been read: USB and the scheduler delay one more than another.
+/// How much earlier than measured a value can have been read: the delays by USB and the scheduler vary.
 constexpr double kReadJitter_s = 0.1;
 
 /// The most pulses that any wind makes in this time; one more falls on a boundary.

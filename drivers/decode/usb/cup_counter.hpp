@@ -35,8 +35,8 @@ struct CupState {
 /// Takes the counter's next value, `elapsed_s` after the one before, by the times at which they were read. Where that
 /// closes the window: the speed in m/s, exactly 0 if no pulse came. Nullopt while it stays open, and for the first
 /// value. The counter may wrap at 2^32. kImplausible if it has gone back (the device was reset), or on by more than
-/// any wind can drive it, or if time has not advanced (negative, not finite): the window begins anew with this value. A
-/// reset that looks like a wrap (from just below 2^32 to a small count) is not detected, but bounded in the same way.
+/// any wind can drive it, or if time has not advanced (negative, not finite): the window starts again with this value.
+/// A reset that looks like a wrap (from just below 2^32 to a small count) is not detected, but bounded in the same way.
 /// Realtime-safe: yes; thread-safe: for distinct states.
 std::optional<Result<double, Refusal>> advance_cup(CupState& state, const CupCalibration& cup, std::uint32_t count,
                                                    double elapsed_s) noexcept;

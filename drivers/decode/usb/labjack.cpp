@@ -115,8 +115,8 @@ LabjackCommand encode_labjack_feedback(const LabjackRequest& request) noexcept {
 }
 
 Result<LabjackReply, LabjackRefusal> decode_labjack(const LabjackRequest& request, ByteSpan reply) noexcept {
-  // Is it the reply to this request?
-  constexpr std::size_t kValues = 3;  // behind error, part and echo
+  // Returns true for the reply to this request.
+  constexpr std::size_t kValues = 3;  // after error, part and echo
   const auto data = data_of_reply(kLabjackFeedback, reply);
   if (!data) return data.error();
   if (data->size() < kValues) return refuse_labjack(Refusal::kMalformed);

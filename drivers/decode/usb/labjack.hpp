@@ -99,9 +99,9 @@ struct LabjackCalibration {
   double volts(std::uint16_t analog) const noexcept { return volts_per_step * analog + offset_v; }
 };
 
-/// What the maker promises for any device.
+/// The maker's limits for any device.
 LabjackCalibration nominal_labjack_calibration(LabjackInput input) noexcept;
-/// Is this what such an input can be off by, or a memory that holds something else?
+/// Returns true if such an input can have this error; otherwise the memory contains something else.
 bool is_believable(const LabjackCalibration& calibration, LabjackInput input) noexcept;
 
 }  // namespace yuragi::drivers::decode::usb

@@ -10,7 +10,7 @@ namespace {
 constexpr std::uint16_t kMcc1208Steps = 4096;
 constexpr double kMcc1208FullScale_v = 10.0;
 
-/// What is wrong with the length of a reply to this request.
+/// The error in the length of a reply to this request.
 std::optional<Refusal> wrong_length(ByteSpan reply, const Mcc1208Transfer& request) {
   if (reply.size() < request.length) return Refusal::kTooShort;
   if (reply.size() > request.length) return Refusal::kMalformed;

@@ -44,7 +44,7 @@ constexpr Mcc1208Transfer mcc1208_read_calibration(std::uint8_t channel) noexcep
   return {0xC0, 0x30, static_cast<std::uint16_t>(0x100 + 8 * channel), 0, 8};
 }
 
-/// How an input's codes are made right; by itself, one that needs nothing.
+/// The correction of an input's codes; the default corrects nothing.
 struct Mcc1208Calibration {
   double slope = 1.0;
   double intercept_steps = 0.0;
@@ -55,7 +55,7 @@ struct Mcc1208Calibration {
 
 Result<std::uint32_t, Refusal> decode_mcc1208_count(ByteSpan reply) noexcept;
 Result<std::uint16_t, Refusal> decode_mcc1208_analog(ByteSpan reply) noexcept;
-/// kInvalid for what no input is off by: a memory that was erased, or never written.
+/// kInvalid if no input can have this error: the memory was erased, or never written.
 Result<Mcc1208Calibration, Refusal> decode_mcc1208_calibration(ByteSpan reply) noexcept;
 
 /// The voltage of an `analog` value.

@@ -10,36 +10,36 @@
 namespace yuragi::wind::blend {
 namespace {
 
-/// Gusts go on changing in calm air as if it moved at this.
+/// In calm air gusts still change as if it moved at this speed.
 constexpr double kMinAdvection_m_s = 0.3;
-/// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.
+/// Below this speed the direction is unreliable; the previous one is held, more strongly the calmer it is.
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
 
-/// Gusts of an absolute source are independent after so many of its intervals.
+/// Gusts of an absolute source are independent after this many of its intervals.
 constexpr double kIntervalsOfAGust = 3.0;
 /// A low pass has done 98 % of its way after 4 time constants.
 constexpr double kPlaneRateTimesHandover = 4.0;
-/// Sources at a place of their own have at least so much weight there.
+/// Sources have at least this weight at their own place.
 constexpr double kMinWeight = 1e-6;
-/// Less than this is nothing.
+/// Shares below this count as zero.
 constexpr double kMinShare = 1e-9;
-/// How fast the strength of the gusts follows what it should be.
+/// The time constant with which the strength of the gusts follows its target.
 constexpr double kStrengthMemory_s = 1.0;
-/// And how fast they lose what is known of them follows the turbulence that is fitted.
+/// And that with which their coherence follows the fitted turbulence.
 constexpr double kCoherenceMemory_s = 10.0;
-/// The noise's eddies turn over at half of their own rate. At the full rate two places 60 m apart on the line of the
-/// wind have less in common than GustCoherence leaves them of what was measured; frozen, they have more.
+/// The noise's eddies turn over at half of their own rate. At the full rate two places 60 m apart along the wind have
+/// less in common than GustCoherence predicts from measurements; with frozen noise they have more.
 constexpr double kTurnoverRate = 0.5;
-/// Waves shorter than so many of its samples are faded out of the tape, over the octave above them.
+/// Waves shorter than this many of its samples are faded out of the tape, over the octave above them.
 constexpr double kMinSamplesAWave = 4.0;
-/// How far the windward edge moves with a wider scene, over how far the wind goes.
+/// The speed at which the windward edge moves to a wider reach, relative to the wind's.
 constexpr double kReachRate = 0.2;
-/// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
-/// machine: the wind goes on from where it was, and only the readings' ages are what they are.
+/// A longer step of time, in ticks or in previous steps, is a jump of the clock or a halt of the machine: the wind
+/// continues from its last state, and only the readings' ages change.
 constexpr double kMaxStep_ticks = 2.0;
 
-/// How many octaves above 1 a ratio is, but 0 to 1.
+/// The number of octaves by which a ratio is above 1, limited to 0 to 1.
 double part_of_octave(double ratio) noexcept {
   if (ratio <= 1.0) return 0.0;
   return ratio >= 2.0 ? 1.0 : std::log2(ratio);
@@ -114,7 +114,7 @@ void BlendedEstimator::share_out(double dt_s) noexcept {
 }
 
 /// The shares of the sources in a band, by weight times trust; their sum is the mean of the trusts, weighted in the
-/// same way, so that sources which do not resolve the band take nothing from one that does (engine/wind/README.md W23).
+/// same way, so that sources that do not resolve the band take nothing from one that does (engine/wind/README.md W23).
 /// Returns the sum of the shares.
 double BlendedEstimator::share_level(std::size_t level, std::span<const double> weights,
                                      std::span<double> shares) const noexcept {
@@ -136,7 +136,7 @@ double BlendedEstimator::share_level(std::size_t level, std::span<const double> 
   return known;
 }
 
-/// The shares among all sources, wherever they stand.
+/// The shares among all sources, at all places.
 void BlendedEstimator::share_bands() noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) weights_[i] = choice_.weight(i);
   for (std::size_t level = 0; level <= kBands; ++level) {
@@ -145,8 +145,8 @@ void BlendedEstimator::share_bands() noexcept {
   }
 }
 
-/// The means make a plane. A second place makes a slope at once, however small its share: so the plane's weights follow
-/// as slowly as a hand-over.
+/// The means form a plane. A second place adds a slope immediately, even with a small share: so the plane's weights
+/// follow at the rate of a hand-over.
 void BlendedEstimator::share_mean(double dt_s) noexcept {
   const double plane_part = -std::expm1(-kPlaneRateTimesHandover / settings_.handover_s * dt_s);
   for (std::size_t i = 0; i < sources_.size(); ++i) level_shares_[i] = shares_[i].weights[0];
@@ -160,9 +160,8 @@ void BlendedEstimator::share_mean(double dt_s) noexcept {
   }
 }
 
-/// The shares in the bands at one place: the sources that stand there share all of them, however small their weight
-/// among others is; how far the place counts at all is the pen's presence. Relative sources have the gusts that are
-/// left.
+/// The shares in the bands at one place: the sources at this place share all of them, even if their weight among others
+/// is small; the pen's presence is the weight of the place. Relative sources get the remaining gusts.
 void BlendedEstimator::share_at(std::size_t index) noexcept {
   Pen& pen = pens_[index];
   double all = 0.0;
@@ -171,7 +170,7 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
     all += choice_.weight(i);
     if (places_.pen_of(i) == index) pen.weight += choice_.weight(i);
   }
-  // Where none of them is selected at present, they are written all the same: nothing jumps when one is selected.
+  // If none of them is selected at present, they are still written, so that nothing jumps when one is selected.
   const double own = pens_.size() == 1 ? 0.0 : kMinWeight;
   const double sum = pen.weight + own * static_cast<double>(places_.sources_at(index));
   const double times = sum > kMinShare ? all / sum : 0.0;
@@ -244,7 +243,7 @@ BlendedEstimator::MeasuredMean BlendedEstimator::measure_mean() noexcept {
   measured.speed_m_s = std::max(measured.speed_m_s, 0.0) + (1.0 - measured.weight) * settings_.climate.mean_speed_m_s;
   measured.trust = trust() * measured.weight;
 
-  // Winds of this mean speed differ from end to end by twice as much at most.
+  // The difference of the wind from end to end is at most twice this mean speed.
   const double difference_m_s = speed_of(slope.per_m_east) * (slope.east_m - slope.west_m) +
                                 speed_of(slope.per_m_south) * (slope.south_m - slope.north_m);
   if (const double most_m_s = 2.0 * measured.speed_m_s; difference_m_s > most_m_s) {
@@ -267,7 +266,7 @@ double BlendedEstimator::trust() const noexcept {
   return knowable > 0.0 ? std::clamp(known / std::max(knowable, known), 0.0, 1.0) : 0.0;
 }
 
-/// The sources at one place add up by amplitude; what is folded onto a frequency, by power (W40).
+/// Sources at one place add up by amplitude; aliased power adds up by power (W40).
 BlendedEstimator::Power BlendedEstimator::measured_power(const turbulence::OctaveFollower::Response& bands,
                                                          std::span<const BandWeights> shares) const noexcept {
   SourceResponse sum;
@@ -285,7 +284,8 @@ BlendedEstimator::Power BlendedEstimator::measured_power(const turbulence::Octav
           std::clamp(std::norm(sum.across) + folded.across, 0.0, 1.0)};
 }
 
-/// The mean wind carries the gusts, and sets the downwind direction; their eddies turn over as the turbulence does.
+/// The mean wind carries the gusts, and sets the downwind direction; their eddies turn over according to the
+/// turbulence.
 void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) noexcept {
   Vector& ahead = ground_.gusts.ahead;
   const double speed_m_s = speed_of(measured.mean);
@@ -318,7 +318,7 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
 }
 
-/// The integral length scale for the coherence law, as it is configured: a fit to fast readings determines it poorly.
+/// The configured integral length scale, for the coherence law: a fit to fast readings determines it poorly.
 double BlendedEstimator::gust_length_m(const MeasuredMean& measured) const noexcept {
   double length_m = (1.0 - measured.weight) * settings_.length_m;
   double all = 1.0 - measured.weight;
@@ -331,8 +331,8 @@ double BlendedEstimator::gust_length_m(const MeasuredMean& measured) const noexc
   return length_m / all;
 }
 
-/// Where each pen stands: at the windward edge of the scenes, or where its sensor does, how far its sensors count, and
-/// its part of the wind that is shown.
+/// The place of each pen (at the windward edge of the scenes, or at its sensor), the weight of its sensors, and its
+/// part of the wind that is shown.
 void BlendedEstimator::place_pens() noexcept {
   double largest = kMinShare;
   double all = 0.0;
@@ -354,7 +354,7 @@ void BlendedEstimator::place_pens() noexcept {
   }
 }
 
-/// What is measured at each place, and what of it the tape can hold.
+/// The measured wind at each place, limited to the waves that the tape can hold.
 void BlendedEstimator::write_gusts() noexcept {
   is_fading_ = false;
   for (std::size_t band = 0; band < kBands; ++band) {
@@ -381,7 +381,7 @@ void BlendedEstimator::write_gusts() noexcept {
   }
 }
 
-/// From what is measured at places that are configured.
+/// From measurements at configured places.
 void BlendedEstimator::learn_reach(double dt_s) noexcept {
   if (pens_.size() < 2) return;
   for (std::size_t p = 0; p < pens_.size(); ++p) {
@@ -402,7 +402,7 @@ void BlendedEstimator::learn_reach(double dt_s) noexcept {
   reach_fit_.advance(dt_s, stroke_, measured_places_);
 }
 
-/// What all sources together leave open at a frequency.
+/// The part of a frequency that all sources together do not resolve.
 BlendedEstimator::OpenPart BlendedEstimator::open_part(double frequency_hz,
                                                        const MeasuredMean& measured) const noexcept {
   OpenPart open;
@@ -429,16 +429,16 @@ double BlendedEstimator::variance_share(std::size_t index, const OpenPart& open,
 }
 
 /// The strength of each octave of the noise, and the part of it that the sensors measure (engine/wind/README.md W20).
-/// The octaves of the way are reduced by that part here; those of the tiles at each place.
+/// The way's octaves are reduced by that part here; those of the tiles at each place.
 void BlendedEstimator::weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept {
-  // A new fit, or another interval of a sensor, is a step, which must not show.
+  // A new fit, or a new interval of a sensor, is a step, which must not show.
   const auto part = static_cast<float>(is_first_ ? 1.0 : -std::expm1(-dt_s / kStrengthMemory_s));
   for (std::size_t i = 0; i < kOctaves; ++i) weigh_octave(i, measured, part);
 }
 
 void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept {
   const double frequency_hz = turbulence::centre_hz(noise_->octaves()[octave], advection_m_s_);
-  // What would jitter from frame to frame is faded out over the octave before.
+  // Waves that would jitter from frame to frame are faded out over the octave before.
   const double shown = part_of_octave(0.5 * settings_.rate_hz / frequency_hz);
   double variance_along = (1.0 - measured.weight) * climate_along_[octave];
   double variance_across = (1.0 - measured.weight) * climate_across_[octave];
@@ -455,8 +455,8 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   float& along_m_s = ground_.gusts.along_m_s[octave];
   float& across_m_s = ground_.gusts.across_m_s[octave];
 
-  // Waves of a plane that run aslant pass more slowly than their length suggests: the frequencies of a tile's octave
-  // are lower by about half an octave, and there it would add to what the sensors measure.
+  // Waves of a plane that run at an angle pass more slowly than their length suggests: the frequencies of a tile's
+  // octave are lower by about half an octave, and there it would add to what the sensors measure.
   const bool is_way = octave < turbulence::GustNoise::kFirstTileOctave;
   const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
   const turbulence::OctaveFollower::Response bands(known_hz);
@@ -551,7 +551,7 @@ State BlendedEstimator::advance(MonoTime now) noexcept {
   share_out(dt_s);
   learn_scales(dt_s);
 
-  // The wind: what is measured, and the gusts for the rest.
+  // The wind: the measured part, and gusts for the rest.
   const MeasuredMean measured = measure_mean();
   carry_gusts(measured, dt_s);
   place_pens();
@@ -566,7 +566,7 @@ State BlendedEstimator::advance(MonoTime now) noexcept {
   return state_;
 }
 
-/// Of the readings that take part; 0 where none does.
+/// Of the readings that are used; 0 if there are none.
 double BlendedEstimator::newest_age_s() const noexcept {
   std::optional<double> newest_s;
   for (std::size_t i = 0; i < sources_.size(); ++i) {

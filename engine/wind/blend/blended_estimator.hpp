@@ -20,81 +20,81 @@
 
 namespace yuragi::wind::blend {
 
-/// The wind that moves things: the live signal where the sensors know, noise of the same spectrum where they do not,
-/// counted once.
+/// The wind that moves things: the live signal in the bands that the sensors resolve, noise of the same spectrum in the
+/// others, without counting power twice.
 ///
 /// In each octave band of frequency the sensor's readings have a weight a: 1 far below the crossover of 0.25 / its
 /// interval (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the
-/// rest *in power*, sqrt(1 - |a A|^2), A being what the sensor's own averaging and the holding of its readings leave of
-/// that band, and the strength that von Karman's spectrum has there; its turbulence intensity and length are fitted to
-/// past readings, and return to the climate's where there are none (engine/wind/README.md W17 to W21). The noise is
-/// read from a pattern that the mean wind carries over the ground (GustNoise) at the sensor's place, along the wind and
-/// across it. A mean that is no longer measured fades into the climate's. All averages are of vectors; weights are
-/// slewed by critically damped filters, so that nothing jumps.
+/// rest *in power*, sqrt(1 - |a A|^2), A being the response of the sensor's own averaging and of the holding of its
+/// readings in that band, and the strength that von Karman's spectrum has there; its turbulence intensity and length
+/// are fitted to past readings, and return to the climate's if there are none (engine/wind/README.md W17 to W21). The
+/// noise is read from a pattern that the mean wind carries over the ground (GustNoise) at the sensor's place, along the
+/// wind and across it. A mean that is no longer measured fades into the climate's. All averages are of vectors; weights
+/// are slewed by critically damped filters, so that nothing jumps.
 ///
-/// Where: what is measured is written where the sensor stands (PenPlaces), which is at the windward edge of the scenes
-/// unless its position is configured, and is carried from there by the mean wind: stroke() is what a tick adds to the
-/// tapes (WindTapes), ground() holds the strength of the noise that fills what is not measured. The state is the wind
-/// at that place; of several places their mean, by the sensors' weights.
+/// Places: measured wind is written at the sensor's place (PenPlaces), which is at the windward edge of the scenes
+/// unless its position is configured, and is carried from there by the mean wind: stroke() is the addition of a tick to
+/// the tapes (WindTapes), ground() holds the strength of the noise that fills the rest. The state is the wind at that
+/// place; of several places their mean, by the sensors' weights.
 ///
 /// Several sources: SourceChoice selects and weights them. Those selected at one place share each band by weight times
-/// trust (W23), so that a slow one dominates the mean and a fast one the gusts; a relative one supplies the gusts that
-/// they do not resolve, scaled to theirs. Sources at several places each have a tape of their own, and their means make
-/// a plane (MeanWindPlane). A source without a vane contributes nothing across the wind, and
-/// one with 8 or 16 points only slow fluctuations.
+/// trust (W23), so that a slow one dominates the mean and a fast one the gusts; a relative one supplies the unresolved
+/// gusts, scaled to theirs. Sources at several places each have a tape of their own, and their means make a plane
+/// (MeanWindPlane). A source without a vane contributes nothing across the wind, and one with 8 or 16 points only slow
+/// fluctuations.
 ///
-/// Delay: what comes from a sensor is later than the wind by half of what it averages over, half of the interval that a
-/// reading is held for, and the group delay of the weighted bands, 0.36 to 0.2 of the interval: blend_group_delay_s().
-/// For means over the interval T, one after the other:
+/// Delay: the sensor's part is later than the wind by half of its averaging time, half of the interval for which a
+/// reading is held, and the group delay of the weighted bands, 0.36 to 0.2 of the interval: blend_group_delay_s(). For
+/// means over the interval T, one after the other:
 ///
-///     frequency times T   to 0.02   0.05   0.1    0.2    0.25 (the crossover)
-///     delay over T        1.36      1.35   1.31   1.25   1.22
+/// frequency times T to 0.02 0.05 0.1 0.2 0.25 (the crossover) delay over T 1.36 1.35 1.31 1.25 1.22
 ///
-/// The state is finite whatever comes in, and continuous: no reading, loss or return makes it jump. Time is a parameter
-/// and may not go back (a call with an earlier time changes nothing). Thread-safe: no; one thread owns it.
-/// Realtime-safe after construction: yes. Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
+/// The state is finite for any input, and continuous: no reading, loss or return makes it jump. Time is a parameter and
+/// must not go back (a call with an earlier time changes nothing). Thread-safe: no; one thread owns it. Realtime-safe
+/// after construction: yes. Source: Taylor 1938, The spectrum of turbulence (frozen turbulence).
 class BlendedEstimator {
  public:
-  /// `noise`: shared with whoever reads the wind at other places. The climate's seed selects where on it the gusts
-  /// begin. Allocates.
+  /// `noise`: shared with readers of the wind at other places. The climate's seed selects the place on it at which the
+  /// gusts begin. Allocates.
   BlendedEstimator(std::size_t source_count, const Settings& settings,
                    std::shared_ptr<const turbulence::GustNoise> noise);
 
-  /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored:
-  /// false.
+  /// Takes a reading of source `source` (below the count given at construction). An implausible one is ignored, and
+  /// returns false.
   bool accept(std::size_t source, const Reading& reading) noexcept;
 
   /// Advances to `now` and returns the wind at the place of the measurement.
   State advance(MonoTime now) noexcept;
 
   /// The same wind over the ground, as of the last advance(); without tapes.
-  /// Other scenes reach farther, or less far: Settings::reach_m. The windward edge moves there as the wind blows,
-  /// so that nothing jumps. Realtime-safe.
+  /// Sets Settings::reach_m for other scenes. The windward edge moves there gradually, so that nothing jumps.
+  /// Realtime-safe.
   void set_reach(double reach_m) noexcept { settings_.reach_m = reach_m; }
 
   const ground::Wind& ground() const noexcept { return ground_; }
-  /// What the last advance() adds to the tapes.
+  /// The addition of the last advance() to the tapes.
   const ground::WindStroke& stroke() const noexcept { return stroke_; }
 
-  /// How `source` does, as of the last advance(). One that is not there is silent.
+  /// The state of `source`, as of the last advance(). A source that does not exist is silent.
   SourceReport report(std::size_t source) const noexcept;
 
-  /// Returns what the readings of `source` are taken as: its configured value, or what is judged or assumed if that is
-  /// unknown.
+  /// Returns the value as which the readings of `source` are used: the configured one, or the judged or assumed one if
+  /// that is unknown.
   TakenValue taken(std::size_t source) const noexcept;
 
-  /// Does another source than `besides` measure the direction of the wind that is shown? As of the last advance().
+  /// Returns true if a source other than `besides` measures the direction of the wind that is shown. As of the last
+  /// advance().
   bool is_direction_live(std::size_t besides) const noexcept;
 
-  /// How much farther gusts are alike here than elsewhere, as learnt from sensors at several places.
+  /// The reach of gusts at this site relative to the usual, as learnt from sensors at several places.
   const GustReach& reach() const noexcept { return reach_fit_.reach(); }
-  /// Goes on from what an earlier run learnt; false, and nothing changes, for what cannot have been learnt.
+  /// Continues from an earlier run's result. Returns false, and changes nothing, if it is implausible.
   bool restore_reach(const GustReach& reach) noexcept { return reach_fit_.restore(reach); }
 
   /// The turbulence that is fitted at the moment, along the wind.
   turbulence::Turbulence turbulence() const noexcept;
 
-  /// The noise that is left at the place of a sensor, where most is known.
+  /// The remaining noise at the place of a sensor, where most is known.
   turbulence::GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
 
  private:
@@ -104,31 +104,31 @@ class BlendedEstimator {
   /// The shares of a source at the moment: of the mean, and of the bands among all sources together.
   struct Share {
     BandWeights weights{};  ///< of the mean (0) and each band (1 + band), among the selected sources
-    double middle = 0.0;    ///< of the mean in the middle of the scenes
-    double tilt = 0.0;      ///< what the plane adds there; it and the slopes follow the plane slowly
+    double middle = 0.0;    ///< of the mean at the middle of the scenes
+    double tilt = 0.0;      ///< the plane's addition there; it and the slopes follow the plane slowly
     double per_m_east = 0.0, per_m_south = 0.0;
   };
 
-  /// What is written at one place.
+  /// The output at one place.
   struct Pen {
-    std::vector<BandWeights> shares;   ///< of each source: of the mean, and of the bands at this place
-    std::vector<BandWeights> written;  ///< as far as the tape can hold them
+    std::vector<BandWeights> shares;   ///< for each source: of the mean, and of the bands at this place
+    std::vector<BandWeights> written;  ///< limited to what the tape can hold
     double weight = 0.0;               ///< the sum of its sources' weights (SourceChoice)
   };
 
   /// The mean by all sources together, and its weight.
   struct MeasuredMean {
     Vector mean;
-    double weight = 0.0;     ///< of the means that are measured; the climate's has the rest
+    double weight = 0.0;     ///< of the measured means; the climate's has the rest
     double speed_m_s = 0.0;  ///< slow mean
-    double trust = 0.0;      ///< of the bands that can be measured: 1 while readings are on time
+    double trust = 0.0;      ///< of the measurable bands: 1 while readings are on time
   };
   /// The part of the power at a frequency that comes from the sensors.
   struct Power {
     double along = 0.0, across = 0.0;
   };
-  /// At a frequency: the share of the gusts that relative sources give, and the part of the mean's that no absolute
-  /// source resolves and that is given to them.
+  /// At a frequency: the share of the gusts from relative sources, and the part of the mean's share that no absolute
+  /// source resolves and that they get.
   struct OpenPart {
     double gusts = 0.0;
     double given = 0.0;
@@ -171,19 +171,19 @@ class BlendedEstimator {
   ground::WindStroke stroke_;
   double advection_m_s_ = 0.0;
   State state_;
-  double reach_m_ = 0.0;      ///< where the windward edge is
-  double last_step_s_ = 0.0;  ///< the time that passed from the last tick but one to the last
+  double reach_m_ = 0.0;      ///< distance of the windward edge
+  double last_step_s_ = 0.0;  ///< duration of the tick before the last
   bool has_begun_ = false;
   bool is_first_ = false;  ///< tick
 
-  // Made anew in each tick; for each source.
+  // Computed in each tick; for each source.
   std::vector<Share> shares_;
   std::vector<double> weights_, level_shares_;
   std::vector<PlaceWeights> place_weights_;
   std::vector<GustReachFit::Place> measured_places_;
-  std::vector<SourceResponse> passed_;  ///< at the octave at hand
-  std::vector<double> folded_;          ///< the power that is folded onto it, over the wind's own
-  BandWeights fade_{};                  ///< what the tape can hold of each band
+  std::vector<SourceResponse> passed_;  ///< for the present octave
+  std::vector<double> folded_;          ///< the power aliased to it, relative to the wind's own
+  BandWeights fade_{};                  ///< the part of each band that the tape can hold
   bool is_fading_ = false;
 };
 

@@ -10,13 +10,13 @@
 namespace yuragi::wind::blend {
 namespace {
 
-/// Below this a vane's direction has less and less weight.
+/// Below this speed a vane's direction has decreasing weight.
 constexpr double kVaneCalm_m_s = 0.5;
-/// After so many whole steps in a row a vane is taken for a coarse one; a fine one makes such steps by chance, one in
-/// 15 at most, so that after other turns more of them are needed.
+/// After this many consecutive whole steps a vane counts as coarse; a fine one makes such steps by chance, one in 15 at
+/// most, so that after other turns more of them are needed.
 constexpr std::size_t kTurnsToDecide = 3;
 constexpr std::size_t kTurnsToDecideIfFine = 12;
-/// 22.5 degrees may come as 22 or 23.
+/// 22.5 degrees can be sent as 22 or 23.
 constexpr double kRounding_deg = 0.6;
 /// The longest smoothing: a coarse vane that has turned is followed within about 100 s, however low the turbulence.
 constexpr double kMaxMemory_s = 100.0;
@@ -64,11 +64,11 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
     memory_s_ = 0.0;
     return;
   }
-  // Quantisation noise is white where the fluctuation covers the steps, else as slow as the gusts.
+  // Quantisation noise is white if the fluctuation covers several steps, otherwise as slow as the gusts.
   const double step_rad = step_deg() * kRadPerDeg;
   const double steps = std::numbers::pi * swing_rad / step_rad;
   const double correlated_s = interval_s + time_scale_s * std::exp(-2.0 * steps * steps);
-  // Von Karman's inertial range is as strong as the stairs at S(f) = sigma^2 T a (f T)^(-5/3) = step^2 / 12 * 2 dt.
+  // Von Karman's inertial range has the density of the steps at S(f) = sigma^2 T a (f T)^(-5/3) = step^2 / 12 * 2 dt.
   const double stairs = step_rad * step_rad / 12.0 * 2.0 * correlated_s;
   const double swing = turbulence::von_karman_inertial_factor() * swing_rad * swing_rad * time_scale_s;
   const double corner_hz = std::pow(swing / stairs, 0.6) / time_scale_s;

@@ -13,34 +13,35 @@ namespace {
 
 using turbulence::OctaveFollower;
 
-/// Quicker gusts than this are not compared: sensors and their clocks are not that exact.
+/// Faster gusts are not compared: sensors and their clocks are not exact enough.
 constexpr double kQuickest_hz = 2.0;
 constexpr double kSamplesOfAWave = 16.0;
-/// A place has a band if its sensors resolve so much of it.
+/// A band of a place is used if its sensors resolve this part of it.
 constexpr double kMinResolved = 0.8;
 constexpr double kPowerMemory_s = 600.0;
-/// Powers are used after so much time, or so many waves if they take longer.
+/// Powers are used after this time, or this many waves if they take longer.
 constexpr double kMinKnown_s = 300.0;
 constexpr double kMinKnown_waves = 10.0;
-/// Where the wind has turned on the way by more than this part of it, or a metre, nothing is learnt.
+/// If the wind has turned on the way by more than this part of the way, or by a metre, nothing is learnt.
 constexpr double kMaxTurn = 0.2;
 constexpr double kMinTurn_m = 1.0;
-/// What was learnt counts for so long.
+/// The memory of what was learnt.
 constexpr double kMemory_s = 4.0 * 3600.0;
 constexpr double kMaxStep_s = 10.0;
-/// The variance of a product of two samples of unit power is (1 + g^2) / 2 with two components; it counts so many
-/// times, as neighbouring samples, bands and pairs are not independent.
+/// The variance of a product of two samples of unit power is (1 + g^2) / 2 with two components; it counts this many
+/// times, because neighbouring samples, bands and pairs are not independent.
 constexpr double kSamplesOfOne = 24.0;
-/// A product counts as no farther from what is expected than so many deviations: gusts are not normally distributed.
+/// The deviation of a product from its expectation is limited to this many standard deviations: gusts are not normally
+/// distributed.
 constexpr double kMaxDeviations = 3.0;
 
-/// Frequencies over the band's centre at which its power is summed up, half an octave apart.
+/// Frequencies relative to the band's centre at which its power is summed up, half an octave apart.
 constexpr int kPointsBelow = 10;
 constexpr int kPointsAbove = 6;
 constexpr std::size_t kPoints = kPointsBelow + 1 + kPointsAbove;
 struct BandPoint {
   double frequency_times_centre = 1.0;
-  double power = 1.0;  ///< what the band passes, times the frequency
+  double power = 1.0;  ///< response of the band, multiplied by the frequency
 };
 /// A factor is known within 20 %.
 constexpr double kKnownVariance = 0.04;
@@ -114,7 +115,7 @@ void GustReachFit::advance(double dt_s, const ground::WindStroke& stroke, std::s
     pace.newest = (pace.newest + 1) % kSamples;
     sample(band, pace.since_s, stroke, places);
     pace.since_s = 0.0;
-    // Weaker wind has no direction to speak of.
+    // Weaker wind has no meaningful direction.
     if (stroke.coherence.speed_m_s >= kMinSpeed_m_s) compare(band, stroke, places);
   }
   if (!has_observed_) return;
@@ -126,7 +127,7 @@ void GustReachFit::advance(double dt_s, const ground::WindStroke& stroke, std::s
   covariance_ = std::clamp(covariance_ * grown, -most, most);
 }
 
-/// What each place has of the band now.
+/// The present gust of the band at each place.
 void GustReachFit::sample(std::size_t band, double passed_s, const ground::WindStroke& stroke,
                           std::span<const Place> places) noexcept {
   for (std::size_t place = 0; place < place_count_; ++place) {
@@ -164,7 +165,7 @@ void GustReachFit::compare(std::size_t band, const ground::WindStroke& stroke, s
       const double north_m = places[i].south_m - places[j].south_m;
       const double along_m = east_m * stroke.ahead.u_m_s + north_m * stroke.ahead.v_m_s;
       const double across_m = north_m * stroke.ahead.u_m_s - east_m * stroke.ahead.v_m_s;
-      // The gust that is at j now was at i so long before, of its way.
+      // The gust that is at j now was at i this much earlier along its way.
       const double before_m = along_m - stroke.coherence.speed_m_s * (places[i].delay_s - places[j].delay_s);
       Vector then;
       if (!read(before_m >= 0.0 ? first : second, newest, stroke.way_m - std::abs(before_m), stroke, then)) continue;
@@ -174,7 +175,8 @@ void GustReachFit::compare(std::size_t band, const ground::WindStroke& stroke, s
   }
 }
 
-/// A band when the wind had come so far; false if it is not known then, or the wind has turned since.
+/// The band at this position along the wind's way. Returns false if it was not known then, or the wind has turned
+/// since.
 bool GustReachFit::read(const Trace& trace, std::size_t newest, double way_m, const ground::WindStroke& stroke,
                         Vector& gust) const noexcept {
   for (std::size_t back = 0; back + 1 < kSamples; ++back) {
@@ -207,7 +209,7 @@ void GustReachFit::observe(std::size_t band, double product, double along_m, dou
     const double left = weight * std::exp(-(across + along) * loss);
     power += weight;
     expected += left;
-    per_across += left * across * loss;  // a gust that reaches farther loses less
+    per_across += left * across * loss;  // a gust with a larger reach loses less
     per_along += left * along * loss;
   }
   expected /= power;

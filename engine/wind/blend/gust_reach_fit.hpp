@@ -11,10 +11,10 @@
 
 namespace yuragi::wind::blend {
 
-/// How much farther gusts are alike at a site than by the law of GustCoherence, learnt from its own pairs of sensors
-/// (W44): the logarithms of the factors across the wind and along it, and the variance of each.
+/// The reach of gusts at a site, relative to the law of GustCoherence, learnt from its own pairs of sensors (W44): the
+/// logarithms of the factors across the wind and along it, and the variance of each.
 struct GustReach {
-  /// Of a site of which nothing is known: the law's constants differ from site to site by about so much.
+  /// For an unknown site: the law's constants differ from site to site by about this.
   static constexpr double kPriorVariance = 0.25;
   /// Largest factor, and the inverse of the smallest.
   static constexpr double kMaxFactor = 3.0;
@@ -22,7 +22,7 @@ struct GustReach {
   double across_ln = 0.0, along_ln = 0.0;
   double across_variance = kPriorVariance, along_variance = kPriorVariance;
 
-  /// The factors, as soon as each is known within 20 %.
+  /// The factors, each only once it is known within 20 %.
   std::optional<double> across() const noexcept;
   std::optional<double> along() const noexcept;
 
@@ -32,22 +32,22 @@ struct GustReach {
 /// May that have been learnt? Pure.
 bool is_valid(const GustReach& reach) noexcept;
 
-/// Learns GustReach from what is measured at several places, octave band by octave band. A gust of one place is
-/// compared with that of the other at the moment when the mean wind has carried it there, as WindTapes reads it; the
-/// product of the two, over their deviations, is expected to be the root coherence. An extended Kalman filter
-/// (Jazwinski 1970, Stochastic Processes and Filtering Theory, 8.3) of two logarithms, bounded; what was learnt counts
-/// for hours of learning, and stays as it is while nothing can be learnt. Causal; no step is larger than some per cent.
+/// Learns GustReach from measurements at several places, octave band by octave band. A gust of one place is compared
+/// with that of the other at the moment when the mean wind has carried it there, as WindTapes reads it; the product of
+/// the two, over their deviations, is expected to be the root coherence. An extended Kalman filter (Jazwinski 1970,
+/// Stochastic Processes and Filtering Theory, 8.3) of two logarithms, bounded; it has a memory of hours of learning,
+/// and does not change while nothing can be learnt. Causal; steps are at most some per cent.
 ///
 /// Allocates at construction only. Thread-safe: no. Realtime-safe after construction: yes; some microseconds a tick.
 class GustReachFit {
  public:
   static constexpr std::size_t kBands = turbulence::OctaveFollower::kBands;
 
-  /// What is measured at a place.
+  /// The measurements at a place.
   struct Place {
     double east_m = 0.0, south_m = 0.0;    ///< where its sensors stand
-    double delay_s = 0.0;                  ///< how much later than the wind its readings are: averaging and hold
-    const ground::WindPen* pen = nullptr;  ///< null: it is not known where its sensors stand
+    double delay_s = 0.0;                  ///< delay of its readings: averaging and hold
+    const ground::WindPen* pen = nullptr;  ///< null: the place of its sensors is unknown
   };
 
   /// `place_count`: with fewer than two nothing is learnt.
@@ -57,11 +57,11 @@ class GustReachFit {
   void advance(double dt_s, const ground::WindStroke& stroke, std::span<const Place> places) noexcept;
 
   const GustReach& reach() const noexcept { return reach_; }
-  /// Goes on from what an earlier run learnt; false, and nothing changes, for what cannot have been learnt.
+  /// Continues from an earlier run's result. Returns false, and changes nothing, if it is implausible.
   bool restore(const GustReach& reach) noexcept;
 
  private:
-  /// A band of one place at a moment, over the mean speed; with the way that the wind had come.
+  /// A band of one place at a moment, relative to the mean speed, and the position along the wind's way.
   struct Sample {
     double way_m = 0.0;
     double carried_east_m = 0.0, carried_south_m = 0.0;
@@ -74,7 +74,7 @@ class GustReachFit {
   struct Trace {
     std::array<Sample, kSamples> ring{};
     double power = 0.0;    ///< mean square of its gusts over the mean speed
-    double known_s = 0.0;  ///< for how long that has been measured
+    double known_s = 0.0;  ///< duration of its measurement
   };
 
   Trace& trace(std::size_t place, std::size_t band) noexcept { return traces_[place * kBands + band]; }

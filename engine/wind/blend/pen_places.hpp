@@ -10,9 +10,9 @@
 namespace yuragi::wind::blend {
 
 /// The places where measured wind is written: one for all sensors without a configured position (the windward edge of
-/// the scenes), and one for each configured position. Sensors closer together than half a metre share one; of
-/// more than WindStroke::kMaxPens places the last ones share the nearest. Relative sources stand where the first
-/// absolute one does. Allocates at construction only. Thread-safe: reading, yes.
+/// the scenes), and one for each configured position. Sensors closer together than half a metre share one; beyond
+/// WindStroke::kMaxPens places further ones share the nearest. Relative sources are at the place of the first absolute
+/// one. Allocates at construction only. Thread-safe: reading, yes.
 class PenPlaces {
  public:
   explicit PenPlaces(std::span<const SourceSettings> sources);
@@ -20,9 +20,9 @@ class PenPlaces {
   struct Place {
     bool is_edge = true;
     double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
-    double lead_m = 0.0;                 ///< the pen is so far upwind of there
+    double lead_m = 0.0;                 ///< the pen is this far upwind of it
   };
-  /// 0 where there are no sources.
+  /// 0 if there are no sources.
   std::size_t count() const noexcept { return places_.size(); }
   const Place& place(std::size_t pen) const noexcept { return places_[pen]; }
   std::size_t pen_of(std::size_t source) const noexcept { return pens_[source]; }

@@ -7,16 +7,16 @@
 namespace yuragi::wind::blend {
 namespace {
 
-/// The median is that of so many gaps.
+/// The median is over this many gaps.
 constexpr std::size_t kMedianOf = 9;
-/// A gap that is shorter than this part of the usual pause is one within a burst.
+/// A gap shorter than this part of the usual pause is within a burst.
 constexpr double kBurstPart = 0.25;
-/// The station speaks in bursts where at least one of so many gaps is one within a burst.
+/// The station sends in bursts if at least one of this many gaps is within a burst.
 constexpr std::size_t kGapsPerBurstGap = 4;
 /// Twelve gaps hold two pauses of bursts of five.
 constexpr std::size_t kSettledAfter = 12;
 
-/// The gap that half of the time, without the longest gap, is spent in gaps up to; that gap where it is the only one.
+/// Half of the time, without the longest gap, is spent in gaps up to the returned one; the only gap if there is one.
 /// Sorts the gaps, of which there is at least one.
 double usual_pause_s(std::span<double> gaps_s) noexcept {
   std::ranges::sort(gaps_s);
@@ -59,7 +59,7 @@ bool ReadingInterval::take_change(double gap_s, bool is_same) noexcept {
   return true;
 }
 
-/// Of the last nine gaps.
+/// Over the last nine gaps.
 double ReadingInterval::median_s() const noexcept {
   std::array<double, kMedianOf> last_s{};
   const std::size_t known = std::min(seen_, kMedianOf);

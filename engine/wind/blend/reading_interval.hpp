@@ -7,14 +7,14 @@ namespace yuragi::wind::blend {
 
 /// How often a source reports something new, from the gaps between its readings (engine/wind/README.md W38).
 ///
-/// A station that speaks regularly has the median of its last nine gaps. One that speaks in bursts (it repeats each
-/// message, or sends several at once, or has two rates in turn) would be taken for a quick one by that: what lies
-/// between its bursts counts. It speaks in bursts where at least a quarter of the last 16 gaps are shorter than a
-/// quarter of its usual pause; the usual pause is the gap that half of the time, but for the longest gap, is spent in
-/// gaps up to. So one outage is no pause, and every pattern that comes again within 16 readings is known.
+/// For a station that sends regularly it is the median of its last nine gaps. That would be too short for a station
+/// that sends in bursts (it repeats each message, or sends several at once, or alternates between two rates): for these
+/// the time between bursts is used. It sends in bursts if at least a quarter of the last 16 gaps are shorter than a
+/// quarter of its usual pause; half of the time, without the longest gap, is spent in gaps up to the usual pause. So
+/// one outage does not count as a pause, and every pattern that repeats within 16 readings is recognised.
 ///
-/// A source that sends only changes reports something new only when its reading differs; its interval is the median
-/// of the last nine times from one change to the next.
+/// A source that sends only changes reports something new only when its reading differs; its interval is the median of
+/// the last nine times from one change to the next.
 ///
 /// Thread-safe: no. Realtime-safe: yes; no allocation.
 class ReadingInterval {
@@ -23,14 +23,14 @@ class ReadingInterval {
 
   explicit ReadingInterval(Speaks speaks = Speaks::kAtIntervals) noexcept : speaks_(speaks) {}
 
-  /// Takes a reading but the first, which came `gap_s` (0 or more) after the one before. `is_same`: with the same
-  /// values. Returns whether it is a new one: false for a repetition, or another one of the same burst.
+  /// Takes each reading except the first, `gap_s` (0 or more) after the one before. `is_same`: with the same values.
+  /// Returns whether it is a new one: false for a repetition, or another one of the same burst.
   bool take(double gap_s, bool is_same) noexcept;
 
   /// s; 0 before the second reading.
   double interval_s() const noexcept { return interval_s_; }
 
-  /// Is the interval known well? Not while all that has been said at it is the same few readings, which may be one
+  /// Returns true if the interval is known well. Not while all readings so far are the same few, which can be one
   /// message of a station that repeats each.
   bool is_settled() const noexcept { return is_settled_; }
 
@@ -48,8 +48,8 @@ class ReadingInterval {
   double interval_s_ = 0.0;
   bool is_in_bursts_ = false;
   bool is_settled_ = false;
-  double since_new_s_ = 0.0;       ///< from the last new reading to the last one
-  double soonest_change_s_ = 0.0;  ///< the shortest gap in which the reading changed; 0: none did
+  double since_new_s_ = 0.0;       ///< time between the last two new readings
+  double soonest_change_s_ = 0.0;  ///< the shortest gap in which the reading changed; 0: it has not changed
 };
 
 }  // namespace yuragi::wind::blend

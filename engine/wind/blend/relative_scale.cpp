@@ -8,9 +8,9 @@ namespace {
 
 constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
-/// The gain of the mean has full weight after far more time than this.
+/// The gain of the mean has full weight after a multiple of this time.
 constexpr double kTimeToBelieve_s = 15.0;
-/// And that of the gusts after far more independent gusts than these.
+/// And that of the gusts after a multiple of this number of independent gusts.
 constexpr double kGustsToBelieve = 4.0;
 /// Added to both sides of a ratio: with hardly any wind it is 1.
 constexpr double kMinSum = 1e-3;

@@ -5,9 +5,8 @@ namespace yuragi::wind::blend {
 /// The gain of a relative source: a slow regression against the absolute sources at the same time.
 ///
 /// The gusts' gain comes from the deviations of both in the bands that both know, the mean's from the mean speeds;
-/// where little is known of the deviations, the gusts have the mean's gain, and where nothing is known both are 1.
-/// Everything fades with `memory_s`; with no absolute source what is known is kept. Thread-safe: no. Realtime-safe:
-/// yes.
+/// if little is known of the deviations, the gusts have the mean's gain, and if nothing is known both are 1. Everything
+/// fades with `memory_s`; without an absolute source it is kept. Thread-safe: no. Realtime-safe: yes.
 class RelativeScale {
  public:
   explicit RelativeScale(double memory_s) : memory_s_(memory_s) {}
@@ -16,19 +15,19 @@ class RelativeScale {
   struct Pair {
     double speed_m_s = 0.0;  ///< slow mean, absolute
     double relative_speed_m_s = 0.0;
-    double gust_m_s = 0.0;  ///< in the bands that both know, less the mean, absolute
+    double gust_m_s = 0.0;  ///< in the bands known to both, without the mean, absolute
     double relative_gust_m_s = 0.0;
     double independent_after_s = 0.0;  ///< time between independent gusts; above 0
   };
   void learn(const Pair& pair, double dt_s) noexcept;
 
-  /// Of the mean, and of the gusts: 0.05 to 20.
+  /// For the mean, and for the gusts: 0.05 to 20.
   double mean_gain() const noexcept { return mean_gain_; }
   double gust_gain() const noexcept { return gust_gain_; }
 
  private:
   double memory_s_;
-  double weight_s_ = 0.0;  ///< of the sums: time, which fades
+  double weight_s_ = 0.0;  ///< of the sums: time, with fading
   double speed_ = 0.0, relative_speed_ = 0.0;
   double square_ = 0.0, relative_square_ = 0.0;
   double gusts_seen_ = 0.0;  ///< independent ones

@@ -9,11 +9,11 @@ namespace {
 /// The interval of the simulated slow sensor: it resolves no waves above 0.37 over this, 0.026 Hz.
 constexpr double kPlayedInterval_s = 14.0;
 constexpr double kMinFitted_m_s = 1.0;
-/// The fit must have seen so many differences of neighbouring means.
+/// Minimum number of differences of neighbouring means that the fit must have seen.
 constexpr double kEnough = 15.0;
 /// Haar's differences of means over tau respond most to waves of 0.37 / tau.
 constexpr double kSeenTimesTau = 0.37;
-/// An octave may lie by so many octaves above the quickest scale.
+/// Maximum distance of an octave above the fastest scale, in octaves.
 constexpr double kBeyond_octaves = 0.5;
 
 }  // namespace
@@ -51,7 +51,7 @@ void SiteSpectrumFit::update(const Observation& observation, const turbulence::W
     return power_of(turbulence.along()) + (observation.has_across ? power_of(turbulence.across()) : 0.0);
   };
   for (std::size_t octave = 0; octave < turbulence::SiteSpectrum::kOctaves; ++octave) {
-    // Where among the quick source's scales, means over interval * 2^scale, it is.
+    // Its place among the fast source's scales, means over interval * 2^scale.
     const double tau_s = kSeenTimesTau / turbulence::SiteSpectrum::centre_hz(octave);
     const double place = std::log2(tau_s / observation.interval_s);
     if (place < -kBeyond_octaves || place > static_cast<double>(turbulence::Fit::kScales - 2)) continue;

@@ -7,10 +7,10 @@
 
 namespace yuragi::wind::blend {
 
-/// Updates a SiteSpectrum from a fast source: its means over 14 s are fitted as if they came from a slow sensor on the
-/// same mast, and the power of the fast readings at each octave (Haar's differences) is compared with that fit. Both
-/// components count together, where there is a vane. Allocates at construction only. Thread-safe: no. Realtime-safe:
-/// yes; a fit every 14 s.
+/// Updates a SiteSpectrum from a fast source: its means over 14 s are fitted like those of a slow sensor on the same
+/// mast, and the power of the fast readings at each octave (Haar's differences) is compared with that fit. Both
+/// components count together, if there is a vane. Allocates at construction only. Thread-safe: no. Realtime-safe: yes;
+/// a fit every 14 s.
 class SiteSpectrumFit {
  public:
   /// `prior` and `fit_memory_s`: of the slow source that is to be corrected.

@@ -41,7 +41,7 @@ void SourceChoice::note_failures(Entry& entry, double dt_s) const noexcept {
   entry.was_live = entry.is_live;
 }
 
-/// Shares `wanted` out among those of the lowest priority that may take it. Where none may, it changes nothing and
+/// Distributes `wanted` among those of the lowest priority that can take it. If none can, it changes nothing and
 /// returns false.
 template <class MayTake>
 bool SourceChoice::give(double Entry::*wanted, bool relative, MayTake may_take) noexcept {
@@ -81,7 +81,7 @@ void SourceChoice::step(double dt_s) noexcept {
     if (!give(&Entry::gusts_wanted, true, is_ready)) give(&Entry::gusts_wanted, true, is_live);
   }
 
-  // The first step: there is nothing to fade from.
+  // The first step has nothing to fade from.
   const bool is_first = !std::exchange(has_begun_, true);
   for (Entry& entry : entries_) {
     if (is_first) {

@@ -12,12 +12,12 @@ namespace yuragi::wind::blend {
 
 /// Selects among several sources and weights them: by role, priority and weight, with hysteresis, slewed.
 ///
-/// The live absolute sources of the lowest priority number share the total weight of 1 by their settings; where there
-/// are none, the relative ones do; where no source is live, the weights stay. A source that has failed is chosen again
-/// only when it has been live for `return_after_s`, and for twice as long after each further failure (up to 64 times;
-/// ten minutes without one reset that), so that an unreliable one does not make the wind change over and over; unless
-/// there is no other source. While absolute sources are selected, the live relative ones of the lowest number supply
-/// the gusts. All weights are slewed by critically damped filters; only the first step sets them at once. Allocates at
+/// The live absolute sources of the lowest priority number share the total weight of 1 by their settings; if there are
+/// none, the relative ones do; where no source is live, the weights stay. A source that has failed is chosen again only
+/// when it has been live for `return_after_s`, and for twice as long after each further failure (up to 64 times; ten
+/// minutes without one reset that), so that an unreliable one does not change the wind repeatedly; but at once if there
+/// is no other source. While absolute sources are selected, the live relative ones of the lowest number supply the
+/// gusts. All weights are slewed by critically damped filters; only the first step sets them at once. Allocates at
 /// construction only. Thread-safe: no. Realtime-safe: yes.
 class SourceChoice {
  public:
@@ -28,7 +28,7 @@ class SourceChoice {
   void set_live(std::size_t source, bool is_live) noexcept { entries_[source].is_live = is_live; }
   void step(double dt_s) noexcept;
 
-  /// Is it selected, for the mean or for gusts, or still being faded in?
+  /// Returns true if it is selected, for the mean or for gusts, or being faded in.
   bool is_chosen(std::size_t source) const noexcept { return entries_[source].is_chosen; }
   /// Its weight, 0 to 1, in the mean and in the gusts that it resolves.
   double weight(std::size_t source) const noexcept { return std::clamp(entries_[source].weight.value, 0.0, 1.0); }

@@ -10,24 +10,25 @@ namespace {
 /// The weight of a band is 0.5 at this over the sensor's interval. With averaging, hold and the width of the bands the
 /// sensor's part has half the power at 0.25 over the interval: the crossover of sensor and noise.
 constexpr double kHalfTrustTimesInterval = 0.5;
-/// A reading is late after so many of its intervals; until then weights do not decay.
+/// A reading is late after this many of its intervals; until then weights do not decay.
 constexpr double kLateAfterIntervals = 1.5;
 /// The interval assumed of a source that has sent one reading: a long one, so that the reading counts for a while and
 /// sets the mean, while the gusts are left to the noise until the next.
 constexpr double kUnknownInterval_s = 10.0;
-/// The fit compares no readings across a gap of so many intervals.
+/// The fit compares no readings across a gap of this many intervals.
 constexpr double kGapIntervals = 3.0;
 /// The rate at which weights are slewed: 95 % of the way in 4.75 s.
 constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kFitEvery_s = 1.0;
-/// What is assumed of a station changes only with an interval that is so many times beyond the limit.
+/// The assumption about a station changes only with an interval this many times beyond the limit.
 constexpr double kBeyondLimit = 1.2;
 
 /// A configured length of a source weighs more than the climate's intensity, which is not specific to the site: means
 /// over times that are longer than a gust determine only the product of the variance and the time scale, so that the
-/// prior of one fixes the other. Found with two half hours at 4.4 m and made-up storms of 20 m/s at 15 m (site_proof).
+/// prior of one fixes the other. Found with two half hours at 4.4 m and synthetic storms of 20 m/s at 15 m
+/// (site_proof).
 constexpr double kOwnLengthWeight = 5.0;
 constexpr double kOwnLengthIntensityWeight = 1.0;
 
@@ -38,7 +39,7 @@ double full_trust_at(double frequency_hz, double interval_s) noexcept {
   return 1.0 / (1.0 + ratio * ratio * ratio * ratio);
 }
 
-/// The mean of a wave over so many of its past cycles, as a complex factor: sinc(cycles) exp(-i pi cycles).
+/// The mean of a wave over this many past cycles, as a complex factor: sinc(cycles) exp(-i pi cycles).
 std::complex<double> mean_of_past(double cycles) noexcept {
   const double angle_rad = std::numbers::pi * cycles;
   const double sine = std::sin(angle_rad);
@@ -108,15 +109,15 @@ bool SourceEstimator::accept(const Reading& reading, const Around& around) noexc
     site_fit_.break_off();
   }
 
-  const bool repeats = !is_first && says_the_same(reading, *record_.last());
+  const bool repeats = !is_first && has_same_values(reading, *record_.last());
   const bool is_new = record_.take(reading);
   if (!is_new && repeats) return true;
   wind_ = reading.speed_m_s * direction_.take(reading, gap_s, around.ahead, around.is_direction_live);
   set_interval();
   if (is_first) begin();
-  if (!is_new) return true;  // another one of the same burst: no independent sample of the turbulence
+  if (!is_new) return true;  // another one of the same burst: not an independent sample of the turbulence
 
-  // The turbulence. Of running means only as many are compared as do not overlap.
+  // The turbulence. Only running means that do not overlap are compared.
   const double interval_s = expected_interval_s();
   measured_.forget(interval_s);
   const double readings_of_one = std::max(1.0, std::round(averaging_s() / interval_s));
@@ -130,8 +131,7 @@ bool SourceEstimator::accept(const Reading& reading, const Around& around) noexc
   return true;
 }
 
-/// The first reading has its full weight at once: nothing of the source is shown yet, and SourceChoice fades it into
-/// the wind.
+/// The first reading has its full weight at once: the source is not yet shown, and SourceChoice fades it into the wind.
 void SourceEstimator::begin() noexcept {
   follower_.begin(wind_);
   speed_m_s_ = record_.last()->speed_m_s;
@@ -155,15 +155,15 @@ double SourceEstimator::trust_at(double frequency_hz) const noexcept {
   return full_trust_at(frequency_hz, slowness_s()) * unfolded_.at(frequency_hz);
 }
 
-/// What readings of an unknown value are: what is judged from them, or what is assumed by their interval, which
-/// changes only with an interval well beyond the limit.
+/// The assumed value of readings with an unknown one: judged from them, or assumed from their interval; it changes only
+/// with an interval well beyond the limit.
 ReadingValue SourceEstimator::likely_value() const noexcept {
   if (const ReadingValue judged = measured_.verdict(); judged != ReadingValue::kUnknown) return judged;
   const double nearer_s = taken_ == ReadingValue::kInstant ? interval_s_ / kBeyondLimit : interval_s_ * kBeyondLimit;
   return assumed_value(nearer_s) == taken_ ? taken_ : assumed_value(interval_s_);
 }
 
-/// False if nothing changes. Weights follow slewed, and the turbulence with its next fit.
+/// Returns false if nothing changes. Weights follow slowly, and the turbulence with its next fit.
 bool SourceEstimator::set_taken() noexcept {
   if (settings_.value != ReadingValue::kUnknown) return false;
   const ReadingValue likely = likely_value();
@@ -197,8 +197,8 @@ void SourceEstimator::set_full_trust() noexcept {
   full_trust_ = full_trust_of(slowness_s(), unfolded_);
 }
 
-/// Adds a reading, a mean over so long or the wind at its end, to the turbulence, and to the site's spectrum if the
-/// source may update it.
+/// Adds a reading, a mean over this time or the wind at its end, to the turbulence, and to the site's spectrum if the
+/// source can update it.
 void SourceEstimator::measure(Vector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kMinSpeed_m_s);
   const bool has_across = has_vane() && !is_coarse();
@@ -230,7 +230,7 @@ void SourceEstimator::fit(double interval_s, double advection_m_s) noexcept {
     return variances;
   };
   along_ = strengths(measured_.along());
-  // Without a vane, or with one of few points: the usual ratio.
+  // Without a vane, or with one of few points, the usual ratio is used.
   if (has_vane() && !is_coarse()) {
     across_ = strengths(measured_.across());
   } else {
@@ -244,7 +244,7 @@ void SourceEstimator::fit(double interval_s, double advection_m_s) noexcept {
 void SourceEstimator::step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept {
   follower_.step(wind_, parts);
 
-  // The weight of a band decays as fast as its waves pass, and as the gusts do (W21).
+  // The weight of a band decays at the rate at which its waves, and the gusts, pass (W21).
   const double on_time_s = std::max(kLateAfterIntervals * interval_s_, record_.explained_s(kLateAfterIntervals));
   const double late_s = std::max(0.0, record_.age_s(now) - on_time_s);
   if (late_s == 0.0) {

@@ -17,7 +17,7 @@
 
 namespace yuragi::wind::blend {
 
-/// Turbulence is measured as a part of the mean speed; of a weaker mean than this it is none.
+/// Turbulence is measured relative to the mean speed; with a weaker mean than this it is not measured.
 inline constexpr double kMinSpeed_m_s = 0.5;
 
 /// A number for the mean (0) and each octave band (1 + band) of a source.
@@ -38,20 +38,20 @@ class SourceEstimator {
  public:
   SourceEstimator(const Settings& blend, const SourceSettings& settings, const turbulence::GustNoise& noise);
 
-  /// What a source without a vane needs to know, and the fit.
+  /// Inputs for a source without a vane, and for the fit.
   struct Around {
     Vector ahead{0.0, 1.0};          ///< unit vector downwind
     bool is_direction_live = false;  ///< another source measures it
     double advection_m_s = 1.0;      ///< how fast gusts pass
   };
 
-  /// Takes a reading; false for one that is impossible, a maximum, or older than what is known.
+  /// Takes a reading. Returns false if it is impossible, a maximum, or older than the last one.
   bool accept(const Reading& reading, const Around& around) noexcept;
 
   /// Advances to `now`. Precondition: it has sent a reading.
   void step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept;
 
-  /// What its readings are taken as; never of kUnknown.
+  /// The value as which its readings are used; never kUnknown.
   TakenValue taken() const noexcept {
     return {.value = taken_, .is_judged = measured_.verdict() != ReadingValue::kUnknown};
   }
@@ -67,15 +67,16 @@ class SourceEstimator {
   /// The weights of the mean and of each band, 0 to 1, slewed; and those that it has while its readings are on time.
   const BandWeights& trust() const noexcept { return trust_; }
   const BandWeights& full_trust() const noexcept { return full_trust_; }
-  /// What its averaging and the holding of its readings leave of a wave in the middle of each band.
+  /// The part of a wave in the middle of each band that remains after averaging and holding.
   const BandWeights& passed() const noexcept { return passed_; }
 
-  /// Its frequency response (W19): what averaging, the holding of readings and its vane leave of a wave of the real
-  /// wind. Times the response of its bands (OctaveFollower::Response) it is the source's part of the blend.
+  /// Its frequency response (W19): the part of a wave of the real wind that remains after averaging, the holding of
+  /// readings and its vane. Multiplied by the response of its bands (OctaveFollower::Response) it is the source's part
+  /// of the blend.
   SourceResponse passed_of(double frequency_hz) const noexcept;
-  /// How much later than the wind its readings are: half of what one averages over, and half of what it is held for.
+  /// The delay of its readings: half of the averaging time, and half of the time for which they are held.
   double reading_delay_s() const noexcept { return 0.5 * (averaging_s() + expected_interval_s()); }
-  /// The power that is folded onto this frequency, over the wind's own there (W40): 0 of means.
+  /// The power that is aliased to this frequency, relative to the wind's own there (W40): 0 for means.
   double folded_over_own(double frequency_hz) const noexcept {
     return taken_ == ReadingValue::kInstant ? 1.0 / unfolded_.at(frequency_hz) - 1.0 : 0.0;
   }
@@ -113,22 +114,21 @@ class SourceEstimator {
   std::array<math::CriticallyDamped, turbulence::OctaveFollower::kBands + 1> trusts_{};
   BandWeights trust_{}, full_trust_{}, passed_{};
   UnfoldedPart unfolded_;
-  double interval_s_ = 0.0;  ///< that the full trust is made for
+  double interval_s_ = 0.0;  ///< the interval for which the full trust is computed
   double speed_m_s_ = 0.0;
-  double measured_s_ = 0.0;  ///< for so long, at most the memory of that speed
+  double measured_s_ = 0.0;  ///< duration, at most the memory of that speed
 
   turbulence::WindTurbulence measured_;
   turbulence::Turbulence turbulence_;
-  turbulence::GustVariances along_, across_;  ///< what each octave of the noise has of it
+  turbulence::GustVariances along_, across_;  ///< its variance in each octave of the noise
   std::shared_ptr<turbulence::SiteSpectrum> site_;
   SiteSpectrumFit site_fit_;
   std::size_t since_kept_ = 0;  ///< readings
   double fitted_s_ = 0.0;       ///< time since the last fit
 };
 
-/// The group delay of the blend, s: how much later than the wind the part of it at this frequency is that comes from a
-/// source that sends a reading every `interval_s`, each the mean over `averaging_s`. Pure. Source:
-/// engine/wind/README.md W22.
+/// The group delay of the blend, s: the delay of the blend behind the wind at this frequency, for a source that sends a
+/// reading every `interval_s`, each the mean over `averaging_s`. Pure. Source: engine/wind/README.md W22.
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept;
 
 }  // namespace yuragi::wind::blend

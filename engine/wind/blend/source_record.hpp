@@ -8,11 +8,11 @@
 
 namespace yuragi::wind::blend {
 
-/// What an estimator remembers of one source: its last reading, and the interval between new ones.
-/// Thread-safe: no. Realtime-safe: yes.
+/// An estimator's record of one source: its last reading, and the interval between new ones. Thread-safe: no.
+/// Realtime-safe: yes.
 class SourceRecord {
  public:
-  /// `unchanged_for_s`: so long a silence of the source means that nothing has changed (SourceSettings).
+  /// `unchanged_for_s`: a silence of up to this long means that nothing has changed (SourceSettings).
   explicit SourceRecord(double unchanged_for_s = 0.0) noexcept
       : unchanged_for_s_(unchanged_for_s),
         interval_(unchanged_for_s > 0.0 ? ReadingInterval::Speaks::kOnChange : ReadingInterval::Speaks::kAtIntervals) {}
@@ -20,12 +20,12 @@ class SourceRecord {
   /// Takes a plausible reading, not older than the last. Returns whether it is a new one (ReadingInterval::take).
   bool take(const Reading& reading) noexcept {
     const bool is_new =
-        !last_ || interval_.take(seconds(reading.time.mono - last_->time.mono), says_the_same(reading, *last_));
+        !last_ || interval_.take(seconds(reading.time.mono - last_->time.mono), has_same_values(reading, *last_));
     last_ = reading;
     return is_new;
   }
 
-  /// Its last reading still holds at `time`: nothing new, but it is not silent.
+  /// Its last reading is still valid at `time`: nothing new, but it is not silent.
   void hold(Instant time) noexcept {
     if (last_) last_->time = time;
   }
@@ -41,15 +41,15 @@ class SourceRecord {
   /// Of the last reading; 0 before the first.
   double age_s(MonoTime now) const noexcept { return last_ ? std::max(0.0, seconds(now - last_->time.mono)) : 0.0; }
 
-  /// A silence of at least so long is explained whatever the interval is, where `intervals` of its own are usual: as
-  /// long as silence means that nothing has changed; and as long as the interval may still be that of repetitions.
+  /// Returns the length of a silence that is explained independent of the interval, if `intervals` of its own are
+  /// usual: while silence means that nothing has changed; and while the interval can still be that of repetitions.
   double explained_s(double intervals) const noexcept {
     const bool may_repeat_itself = interval_s() > 0.0 && !interval_.is_settled();
     return std::max(unchanged_for_s_, may_repeat_itself ? intervals * kUnsettledInterval_s : 0.0);
   }
 
-  /// Has it sent a reading within `stale_intervals` of its own intervals (at least a second), or is its silence
-  /// explained otherwise?
+  /// Returns true if it has sent a reading within `stale_intervals` of its own intervals (at least a second), or if its
+  /// silence is explained otherwise.
   bool is_live(MonoTime now, double stale_intervals) const noexcept {
     return is_on_time(now, stale_intervals) || (last_ && age_s(now) <= explained_s(stale_intervals));
   }
@@ -71,7 +71,7 @@ class SourceRecord {
 
   static constexpr double kAssumedInterval_s = 2.0;
   static constexpr double kMinStaleAfter_s = 1.0;
-  /// Of a station that repeats each message: more than the 18 s of Acurite's.
+  /// For a station that repeats each message: more than the 18 s of Acurite's.
   static constexpr double kUnsettledInterval_s = 20.0;
 
   std::optional<Reading> last_;

@@ -5,9 +5,8 @@
 
 namespace yuragi::wind::blend {
 
-/// How much of the power of a source's samples at a frequency is the wind's own there (von_karman_unfolded_part()),
-/// made anew with each fit, and read from a table in between. Of means it is 1 everywhere. Thread-safe: no.
-/// Realtime-safe: yes.
+/// The share of the wind's own power in a source's samples at a frequency (von_karman_unfolded_part()), computed with
+/// each fit, and read from a table in between. For means it is 1 everywhere. Thread-safe: no. Realtime-safe: yes.
 class UnfoldedPart {
  public:
   UnfoldedPart() { parts_.fill(1.0); }
@@ -20,7 +19,7 @@ class UnfoldedPart {
 
  private:
   static constexpr std::size_t kAnOctave = 4;
-  static constexpr int kFirstOctave = -7;  ///< of the frequency times the interval; what is slower is folded alike
+  static constexpr int kFirstOctave = -7;  ///< of the frequency times the interval; constant below
   static constexpr int kLastOctave = 3;
   static constexpr std::size_t kPoints = kAnOctave * static_cast<std::size_t>(kLastOctave - kFirstOctave) + 1;
 

@@ -16,12 +16,12 @@ namespace {
 
 constexpr std::array<turbulence::WindComponent, 3> kComponents = {
     turbulence::WindComponent::kAlong, turbulence::WindComponent::kAcross, turbulence::WindComponent::kUpward};
-/// Over those of u (IEC 61400-1:2005, annex B.2).
+/// Relative to u (IEC 61400-1:2005, annex B.2).
 constexpr std::array kDeviations = {1.0, 0.8, 0.5};
 constexpr std::array kLengths = {1.0, 2.7 / 8.1, 0.66 / 8.1};
 
 constexpr std::size_t kPeriodsPerWay = 256;
-constexpr std::size_t kFieldWaySamples = 16 * kPeriodsPerWay / 2;  // 16 in its shortest waves, which are two tiles long
+constexpr std::size_t kFieldWaySamples = 16 * kPeriodsPerWay / 2;  // 16 in its shortest waves, of two tiles
 
 VonKarmanModes modes_of(const WindFieldSettings& settings, turbulence::WindComponent component) {
   const auto i = static_cast<std::size_t>(component);
@@ -39,7 +39,7 @@ class CellPower {
         cell_rad_m_(2.0 * std::numbers::pi / (static_cast<double>(settings.samples) * settings.spacing_m)) {}
 
   double operator()(double x, double z, double y) const {
-    // The density bends most where waves are long: those cells are divided.
+    // The density curves most for long waves: those cells are divided.
     const double cycles = math::length(x, z, y);
     const int parts = cycles < 0.5 ? (is_space_ ? 32 : 128) : cycles < 3.0 ? 8 : 1;
     const int parts_y = is_space_ ? parts : 1;
@@ -98,7 +98,7 @@ std::uint64_t seed_of(const WindFieldSettings& settings, turbulence::WindCompone
 
 SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& settings,
                                                    turbulence::WindComponent component, std::uint64_t seed) {
-  // What the tile has no mode for is in the cell about 0: waves longer than two tiles.
+  // Waves longer than two tiles, for which the tile has no mode, are in the cell about 0.
   const double way_m = static_cast<double>(kPeriodsPerWay * settings.samples) * settings.spacing_m;
   const double length_m = kLengths[static_cast<std::size_t>(component)] * settings.length_m;
   return {noise::make_noise_1d({.size = kFieldWaySamples,
@@ -109,8 +109,8 @@ SpectralWindField::Way SpectralWindField::make_way(const WindFieldSettings& sett
           std::sqrt(CellPower(settings, component)(0.0, 0.0, 0.0))};
 }
 
-/// How much each wave of w is to be like that of u. Most of their power is in different waves, so that with a likeness
-/// of 1 the stress would be 0.63 to 0.8, as the tile is long and fine.
+/// The likeness of each wave of w to that of u. Most of their power is in different waves, so that with a likeness of 1
+/// the stress would be 0.63 to 0.8, depending on the tile's length and resolution.
 double SpectralWindField::likeness_of(const WindFieldSettings& settings) {
   if (settings.stress == 0.0 || settings.turbulence_intensity * settings.speed_m_s == 0.0) return 0.0;
   const noise::SharedVariance shared =
@@ -177,7 +177,7 @@ SpectralWindField::SpectralWindField(const WindFieldSettings& settings, double l
 void SpectralWindField::go_to(double time_s) noexcept {
   const double way_m = speed_m_s_ * time_s;
   noise_.move_to({way_m * ahead_.u_m_s / period_m_, -way_m * ahead_.v_m_s / period_m_, 0.0}, turning_rad_s_ * time_s);
-  // What is carried past comes from upwind: read at minus the way.
+  // The wind comes from upwind: read at minus the way.
   const std::uint32_t place = noise::torus_phase(-way_m, static_cast<double>(kPeriodsPerWay) * period_m_);
   for (std::size_t i = 0; i < ways_.size(); ++i) {
     now_m_s_[i] = ways_[i].deviation_m_s * static_cast<double>(noise::read_noise(ways_[i].noise, place));

@@ -4,8 +4,8 @@
 
 namespace yuragi::wind::field {
 
-/// How one component of isotropic turbulence spreads its variance over wave vectors: von Karman's, in three dimensions
-/// and, what a level plane cuts out of those, in two. A straight line along the wind through it has von Karman's
+/// The distribution of the variance of one component of isotropic turbulence over wave vectors: von Karman's, in three
+/// dimensions and, for a level plane through it, in two. A straight line along the wind through it has von Karman's
 /// spectrum (WindSpectrum: the longitudinal one for u, the transverse one for v and w), and two lines side by side have
 /// the coherence that goes with it (von_karman_coherence).
 ///
@@ -33,8 +33,8 @@ class VonKarmanModes {
 
 /// The coherence of u (the root of the squared one, with its sign) at two places `distance_m` apart across the wind, in
 /// that turbulence, at the wavenumber `along_rad_m` = 2 pi f / U; `length_m`: integral length scale of u along the
-/// wind. Where the distance is small against L it is within 0.09 of Davenport's exp(-7 f d / U), and 0.19 of exp(-10 f
-/// d / U). Source: Harris 1971, The nature of the wind; IEC 61400-1, annex B (the coherence of the isotropic model).
+/// wind. For distances small against L it is within 0.09 of Davenport's exp(-7 f d / U), and 0.19 of exp(-10 f d / U).
+/// Source: Harris 1971, The nature of the wind; IEC 61400-1, annex B (the coherence of the isotropic model).
 double von_karman_coherence(double along_rad_m, double distance_m, double length_m) noexcept;
 
 }  // namespace yuragi::wind::field

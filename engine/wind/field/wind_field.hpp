@@ -51,8 +51,8 @@ class GroundWindField final : public WindField {
   const turbulence::GustNoise& noise_;
 };
 
-/// Places in rows: sample (i, j, k) stands i - count_x / 2 (rounded down) steps east of the middle, j up from the
-/// ground, and k - count_z / 2 south.
+/// Places in rows: sample (i, j, k) is i - count_x / 2 (rounded down) steps east of the middle, j up from the ground,
+/// and k - count_z / 2 south.
 struct Grid {
   std::size_t count_x = 1, count_y = 1, count_z = 1;
   double spacing_m = 1.0;

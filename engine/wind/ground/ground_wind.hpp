@@ -13,14 +13,14 @@
 
 namespace yuragi::wind::ground {
 
-/// How the measured mean wind changes from place to place where several anemometers stand apart: a plane through their
+/// The change of the measured mean wind from place to place, with anemometers at several places: a plane through their
 /// means, constant beyond the outermost of them. Without a slope: the same everywhere.
 struct WindSlope {
   Vector per_m_east, per_m_south;       ///< (m/s) / m
-  double west_m = 0.0, east_m = 0.0;    ///< where the plane ends, metres east of the middle of the scene
+  double west_m = 0.0, east_m = 0.0;    ///< ends of the plane, metres east of the middle of the scene
   double north_m = 0.0, south_m = 0.0;  ///< and south of it
 
-  /// By how much the wind at a place differs from that in the middle of the scene.
+  /// The difference of the wind at a place from that in the middle of the scene.
   Vector at(double at_east_m, double at_south_m) const noexcept {
     const double east = std::clamp(at_east_m, west_m, east_m) - std::clamp(0.0, west_m, east_m);
     const double south = std::clamp(at_south_m, north_m, south_m) - std::clamp(0.0, north_m, south_m);
@@ -28,17 +28,17 @@ struct WindSlope {
   }
 };
 
-/// The wind over the ground at one moment: the measured wind, where it has been carried to by now, and the noise that
-/// fills what is not measured there (engine/wind/README.md W26). Finite. Refers to the tapes of what was measured;
-/// without them (nothing is measured, or a test) all places have the same but for their own gusts. Thread-safe and
+/// The wind over the ground at one moment: the measured wind at the places to which it has been carried, and the noise
+/// that fills the rest (engine/wind/README.md W26). Finite. Refers to the tapes of the measured wind; without them
+/// (nothing is measured, or a test) all places have the same wind except for their own gusts. Thread-safe and
 /// realtime-safe: reading, yes.
 struct Wind {
-  Vector everywhere;                    ///< without tapes: the wind of all places, less the gusts of the tiles
-  WindSlope slope;                      ///< of the mean; none unless sensors stand at several places
-  turbulence::GustNoise::Moment gusts;  ///< the noise, at its strength where nothing is measured
+  Vector everywhere;                    ///< without tapes: the wind of all places, minus the gusts of the tiles
+  WindSlope slope;                      ///< of the mean; zero unless sensors are at several places
+  turbulence::GustNoise::Moment gusts;  ///< the noise, at its strength without measurements
   const WindTapes* tapes = nullptr;
-  double gain = 1.0;       ///< on all wind that is read from the tapes
-  double gust_gain = 1.0;  ///< and on its gusts besides
+  double gain = 1.0;       ///< factor on all wind that is read from the tapes
+  double gust_gain = 1.0;  ///< further factor on its gusts
   Vector breeze;           ///< blows everywhere besides
   Vector advection;        ///< how fast the mean wind carries the gusts and the tapes, m/s
   /// The number of the animation's tick, by which scenes spread slow work over several ticks (ReadingSchedule). Without
@@ -49,8 +49,8 @@ struct Wind {
   /// The same wind everywhere.
   Wind(Vector wind) : everywhere(wind) {}  // NOLINT(google-explicit-constructor): a wind is a wind
 
-  /// The wind at a place (metres east and south of the middle of the scenes) without the gusts that pass there: its
-  /// mean, and what is longer than the ground.
+  /// The wind at a place (metres east and south of the middle of the scenes) without its local gusts: its mean, and the
+  /// waves that are longer than the ground.
   Vector smooth_at(double east_m, double south_m) const noexcept {
     return tapes == nullptr ? untaped_at(east_m, south_m) : smooth(tapes->known_at(east_m, south_m), east_m, south_m);
   }
@@ -66,7 +66,7 @@ struct Wind {
                             : at(noise, tapes->at(east_m, south_m), east_m, south_m);
   }
 
-  /// Without tapes: what a place has besides its own gusts.
+  /// Without tapes: the wind of a place without its own gusts.
   Vector untaped_at(double east_m, double south_m) const noexcept { return everywhere + slope.at(east_m, south_m); }
 
   // The same three of a reading of the tapes at that place.
@@ -81,7 +81,7 @@ struct Wind {
     return measured(reading, east_m, south_m) + reading.gain * noise.local(left_of(reading), east_m, south_m);
   }
 
-  /// The noise where this is measured.
+  /// The noise that remains with this measurement.
   turbulence::GustNoise::Moment left_of(const WindTapes::Reading& reading) const noexcept {
     turbulence::GustNoise::Moment left = gusts;
     for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
@@ -92,16 +92,16 @@ struct Wind {
   }
 };
 
-/// The wind that moves the scenes: what it is where it is measured, for people to see; over the ground; and what it
-/// adds to the tapes. A reader of `ground` has WindTapes of its own, writes `stroke` of every moment onto them, and
-/// lets `ground` refer to them: Latest may drop a moment, over which the tapes are interpolated.
+/// The wind that moves the scenes: at the place of measurement, for display; over the ground; and its addition to the
+/// tapes. A reader of `ground` has its own WindTapes, writes `stroke` of every moment onto them, and makes `ground`
+/// refer to them: Latest can drop a moment; the tapes are then interpolated.
 struct DrivingWind {
   State state;
   Wind ground{};
   WindStroke stroke{};
 };
 
-/// The wind over the ground at this moment, read from these tapes, onto which its stroke is written.
+/// The wind over the ground at this moment, read from these tapes, after its stroke is written onto them.
 inline Wind written_to(WindTapes& tapes, const DrivingWind& wind) noexcept {
   tapes.write(wind.stroke);
   Wind ground = wind.ground;
@@ -109,8 +109,8 @@ inline Wind written_to(WindTapes& tapes, const DrivingWind& wind) noexcept {
   return ground;
 }
 
-/// The wind where it is measured at this moment (of several places their mean), or in the middle of the scenes where
-/// nothing can be measured.
+/// The wind at the place of measurement at this moment (for several places their mean), or in the middle of the scenes
+/// if nothing can be measured.
 inline Vector wind_where_measured(const Wind& ground, const WindStroke& stroke,
                                   const turbulence::GustNoise& noise) noexcept {
   if (stroke.pen_count == 0) return ground.at(noise, 0.0, 0.0);
@@ -121,7 +121,7 @@ inline Vector wind_where_measured(const Wind& ground, const WindStroke& stroke,
   return wind;
 }
 
-/// A wind that is stronger by a factor, blowing as far.
+/// The wind multiplied by a factor, with the same distances.
 inline Wind operator*(double gain, Wind wind) noexcept {
   wind.everywhere = gain * wind.everywhere;
   wind.slope.per_m_east = gain * wind.slope.per_m_east;

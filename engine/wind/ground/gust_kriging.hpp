@@ -17,7 +17,8 @@ namespace yuragi::wind::ground {
 ///
 /// c_i the coherence of sensor i with the place, C_ij that of two sensors, N a small nugget. While a sensor comes or
 /// goes its presence is between 0 and 1, and the weights are the mean of those with it and those without it, so that
-/// nothing jumps, however alike two sensors are. The part w' C w of the power is known, at most 1. One lane an octave.
+/// nothing jumps, even if two sensors are nearly the same. The part w' C w of the power is known, at most 1. One lane
+/// an octave.
 ///
 /// Thread-safe: reading, yes. Realtime-safe: yes.
 template <std::size_t lanes>
@@ -26,8 +27,8 @@ class GustKriging {
   static constexpr std::size_t kMost = WindStroke::kMaxPens;
   using Lanes = std::array<float, lanes>;
 
-  /// What changes with the wind alone, not from place to place: for these sensors. `coherent(i, distance_m)`: what is
-  /// left of the gusts of sensor i at so many metres of the law's distance, for each lane.
+  /// Updates the part that depends on the wind only, not on the place, for these sensors. `coherent(i, distance_m)`:
+  /// the remaining part of the gusts of sensor i at this distance of the law, for each lane.
   template <class Coherent>
   void prepare(std::span<const WindPen> pens, Vector ahead, const GustCoherence& law, Coherent coherent) noexcept {
     count_ = pens.size();
@@ -57,7 +58,7 @@ class GustKriging {
     }
   }
 
-  /// The weights of the sensors at a place, and by what they are limited: coherent[i] is c_i.
+  /// The weights of the sensors at a place; coherent[i] is c_i.
   void weigh(const std::array<Lanes, kMost>& coherent, std::array<Lanes, kMost>& weights) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       weights[i].fill(0.0F);
@@ -72,7 +73,7 @@ class GustKriging {
     }
   }
 
-  /// w' (C . part) w: the power that is known, where each two sensors know `part(i, j, lane)` of what they could.
+  /// w' (C . part) w: the known power, if each two sensors know `part(i, j, lane)` of the possible.
   template <class Part>
   Lanes power(const std::array<Lanes, kMost>& weights, Part part) const noexcept {
     Lanes sum{};
@@ -91,7 +92,7 @@ class GustKriging {
 
   static bool is_among(unsigned there, std::size_t i) noexcept { return (there >> i & 1U) != 0; }
 
-  /// Adds `part` of (C + N)^-1 of those sensors that are `there`. Gauss and Jordan; it is positive definite.
+  /// Adds `part` of (C + N)^-1 of the sensors in `there`. Gauss and Jordan; it is positive definite.
   void add_inverse(unsigned there, double part, std::size_t lane) noexcept {
     std::array<std::array<double, kMost>, kMost> left{}, right{};
     for (std::size_t i = 0; i < count_; ++i) {

@@ -13,7 +13,7 @@ constexpr std::size_t kAcross = kAlong + kTapeOctaveLanes;
   return first + fraction * (second - first);
 }
 
-/// Lane by lane half to half, so that every row adds in the same order.
+/// Adds the halves of the lanes repeatedly, so that every row adds in the same order.
 [[gnu::always_inline]] inline float sum_of(float* lanes) noexcept {
   for (std::size_t i = 0; i < 8; ++i) lanes[i] += lanes[i + 8];
   for (std::size_t i = 0; i < 4; ++i) lanes[i] += lanes[i + 4];
@@ -61,8 +61,8 @@ void many(const TapeKernelArguments& in) noexcept {
     read_gusts(in.places[i], in.east_m_s + i, in.north_m_s + i);
   }
   if (in.octave_count == 0) return;
-  // All octaves of some places, and then place by place for each octave: arrays that are written in turns may stand so
-  // in memory that they drive each other out of the cache.
+  // All octaves of some places, and then place by place for each octave: arrays that are written alternately can evict
+  // each other from the cache.
   constexpr std::size_t kAtOnce = 16;
   alignas(64) float along[kAtOnce][kTapeOctaveLanes];
   alignas(64) float across[kAtOnce][kTapeOctaveLanes];

@@ -11,18 +11,19 @@ namespace yuragi::wind::ground {
 constexpr std::size_t kTapeBandLanes = 16;
 constexpr std::size_t kTapeOctaveLanes = 32;
 
-/// What a place reads: two samples of a tape, two rows of what is kept over distance, and how far between them.
+/// The inputs of a place: two samples of a tape, two rows of the kept part over distance, and the position between
+/// them.
 struct TapeKernelPlace {
   const float* first = nullptr;   ///< lanes of WindSample: bands east, bands north, octaves along, octaves across
   const float* second = nullptr;  ///< the same
-  const float* near = nullptr;    ///< lanes of what is kept: bands, octaves
+  const float* near = nullptr;    ///< lanes of the kept part: bands, octaves
   const float* far = nullptr;
   float fraction = 0.0F;  ///< from the first to the second
   float row_fraction = 0.0F;
   float kept = 1.0F;  ///< besides
 };
 
-/// Where the octave numbered `octave` goes: a value for each place.
+/// The output of the octave numbered `octave`: a value for each place.
 struct TapeKernelOctave {
   std::size_t octave = 0;
   float* along = nullptr;

@@ -10,8 +10,8 @@
 
 namespace yuragi::wind::ground {
 
-/// A number for each octave band of what is measured, and for each octave of the noise's tiles: padded to whole SIMD
-/// registers, with zeros behind the last.
+/// A number for each octave band of the measured wind, or for each octave of the noise's tiles: padded to whole SIMD
+/// registers with zeros.
 inline constexpr std::size_t kBandLanes = 16;
 inline constexpr std::size_t kTileOctaveCount = 2 * turbulence::GustNoise::kTileOctaves;
 inline constexpr std::size_t kOctaveLanes = (kTileOctaveCount + 15) / 16 * 16;
@@ -25,8 +25,8 @@ struct alignas(64) WindSample {
   OctaveLanes known_along{}, known_across{};  ///< the part of each noise octave's power that they cover
   Vector mean;                                ///< slower than all bands
   Vector way;                                 ///< the noise's waves that are longer than the ground
-  double east_m = 0.0, south_m = 0.0;         ///< the place, less how far the wind had carried the gusts by then
-  double gain = 1.0;                          ///< of the ceiling
+  double east_m = 0.0, south_m = 0.0;  ///< the place, minus the distance that the wind had carried the gusts by then
+  double gain = 1.0;                   ///< of the ceiling
 };
 
 /// A sample between two.
@@ -36,23 +36,24 @@ WindSample between(const WindSample& first, const WindSample& second, double fra
 struct WindPen {
   double east_m = 0.0, south_m = 0.0;  ///< from the middle of the scenes
   double part = 1.0;                   ///< of the wind that is shown to people
-  double presence = 0.0;  ///< of its sensors among those of other places: 0 they are gone, 1 they are there
-  /// Of the mean (0) and each band, as they go onto the tape.
+  double presence = 0.0;               ///< weight of its sensors among those of other places: 0 absent, 1 present
+  /// For the mean (0) and each band, as they are written onto the tape.
   std::array<double, turbulence::OctaveFollower::kBands + 1> weights{};
   WindSample now;      ///< at this place
   WindSample written;  ///< the same without waves that are too short for the tape
 };
 
-/// What one tick of the estimator adds to the tapes. A value of some kilobytes that is passed from thread to thread.
+/// The addition of one tick of the estimator to the tapes. A value of some kilobytes that is passed from thread to
+/// thread.
 struct WindStroke {
   static constexpr std::size_t kMaxPens = 4;
 
-  std::size_t pen_count = 0;                           ///< 0: nothing can be measured, there is no tape
-  double way_m = 0.0;                                  ///< that the mean wind has come, all in all; never less
+  std::size_t pen_count = 0;                           ///< 0: nothing can be measured, there are no tapes
+  double way_m = 0.0;                                  ///< total way of the mean wind; it never decreases
   double carried_east_m = 0.0, carried_south_m = 0.0;  ///< and its vector: how far it has carried the gusts
   Vector ahead{0.0, 1.0};                              ///< unit vector downwind
   GustCoherence coherence;
-  OctaveLanes octave_hz{};  ///< at which frequency each octave of the tiles passes
+  OctaveLanes octave_hz{};  ///< frequency at which each octave of the tiles passes
   std::array<WindPen, kMaxPens> pens;
 };
 

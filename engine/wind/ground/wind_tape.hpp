@@ -8,13 +8,13 @@
 
 namespace yuragi::wind::ground {
 
-/// The wind that was measured at one place, along the way that it has gone since: a ring of samples, one each kStep_m
-/// of the way. The pen writes where the sensor stands, the mean wind carries the tape on, and a place D downwind reads
+/// The wind that was measured at one place, along the way that it has travelled since: a ring of samples, one per
+/// kStep_m of the way. The pen writes at the sensor's place, the mean wind moves the tape, and a place D downwind reads
 /// the sample that was written when the way was D shorter: the propagation operator, "read at the place minus the
 /// shift" (Chiba, section 2-2), for a measured signal (engine/wind/README.md W25).
 ///
-/// A tick writes as many samples as the way has passed, linear between this tick's and the last one's. The first fills
-/// the tape with the mean, without gusts. Owns its samples (0.4 MB). Thread-safe: no. Realtime-safe: all but
+/// A tick writes as many samples as the way has advanced, linear between this tick's and the last one's. The first
+/// fills the tape with the mean, without gusts. Owns its samples (0.4 MB). Thread-safe: no. Realtime-safe: all but
 /// construction.
 class WindTape {
  public:
@@ -26,16 +26,16 @@ class WindTape {
 
   void write(const WindPen& pen, double way_m) noexcept;
 
-  /// Two samples and how far between them the wind stood so far back along the way (0 or more).
+  /// Two samples, and the position of the wind between them this far back along the way (0 or more).
   struct Place {
     const WindSample* first = nullptr;
     const WindSample* second = nullptr;
     double fraction = 0.0;
-    double left_m = 0.0;  ///< to the end of the tape; below 0: the last sample stands for what is beyond
+    double left_m = 0.0;  ///< to the end of the tape; negative: beyond it, where the last sample is used
   };
   Place back(double way_m) const noexcept {
     const double left_m = kLength_m - 2.0 * kStep_m - way_m;
-    // Near the pen what is measured now counts, so that nothing jumps when a sample is finished.
+    // Near the pen the present measurement counts, so that nothing jumps when a sample is completed.
     if (way_m < kStep_m) return {&now_, &one_back_, way_m / kStep_m, left_m};
     const double place = std::max((way_m_ - way_m) / kStep_m, static_cast<double>(newest_ - kSamples + 1));
     auto number = static_cast<std::int64_t>(place);  // toward zero
@@ -54,7 +54,7 @@ class WindTape {
 
   std::vector<WindSample> samples_;
   bool has_begun_ = false;
-  std::int64_t newest_ = 0;  ///< number of the last sample that is written; it stands newest_ kStep_m along the way
+  std::int64_t newest_ = 0;  ///< number of the last written sample; it is newest_ kStep_m along the way
   double way_m_ = 0.0;
   WindSample now_, last_written_, one_back_;
 };

@@ -12,7 +12,7 @@
 namespace yuragi::wind::ground {
 namespace {
 
-/// Less of a wave's power than this on the tape counts as none.
+/// A smaller share of a wave's power on the tape counts as none.
 constexpr double kNothing = 1e-12;
 /// The length at its end over which a tape's gusts fade out.
 constexpr double kTapeEnd_m = 16.0;
@@ -21,14 +21,13 @@ constexpr double kNearby_m = 1.0;
 
 constexpr KernelRows<TapeKernels> kTapeRows = YURAGI_KERNEL_ROWS(tape_kernels);
 
-/// A row's lateness changes by no more than this each time that the row is renewed, every half second: less than a
-/// tick.
+/// The maximum change of a row's lateness per renewal of the row, every half second: less than a tick.
 constexpr double kLatenessStep_s = 0.01;
 
-/// Places are processed so many at a time.
+/// Number of places that are processed at a time.
 constexpr std::size_t kPlacesAtOnce = 32;
 
-/// The part that is left of a sensor's gusts, relative to what is left by the place's distance alone.
+/// The remaining part of a sensor's gusts, relative to that by the place's distance alone.
 template <std::size_t lanes>
 std::array<float, lanes> part_of(const std::array<float, lanes>& kept, const std::array<float, lanes>& by_distance,
                                  float besides) noexcept {
@@ -66,7 +65,7 @@ class OctaveResponses {
   }
 
   using Octaves = std::array<double, kTileOctaveCount>;
-  /// Of each octave what the bands pass together, each with its weight.
+  /// For each octave the sum over the bands, each with its weight.
   struct Passed {
     Octaves real{}, imaginary{};
     double power(std::size_t i) const noexcept { return real[i] * real[i] + imaginary[i] * imaginary[i]; }
@@ -80,9 +79,9 @@ class OctaveResponses {
     return sum;
   }
 
-  /// By how much `left` is later than `all`: where their correlation, sum of S |A| cos(w t - a) over the octaves, is
-  /// largest, A = left conj(all) = |A| exp(-j a), S von Karman's power (W5). Goes there from `late_s`, in Newton's
-  /// steps with the curvature of small angles, which are never too long.
+  /// The delay of `left` behind `all`, at which their correlation, sum of S |A| cos(w t - a) over the octaves, is
+  /// largest, A = left conj(all) = |A| exp(-j a), S von Karman's power (W5). Iterates from `late_s`, in Newton's steps
+  /// with the curvature of small angles, which are never too long.
   double later_s(double late_s, const Passed& left, const Passed& all) const noexcept {
     double slope = 0.0;
     double curvature = 0.0;
@@ -118,8 +117,7 @@ double WindTapes::distance_of(std::size_t row) noexcept {
   return std::ldexp(within, kFirstOctave + static_cast<int>(step / kRowsAnOctave));
 }
 
-/// Rows stand on a straight line within an octave of the distance: its exponent and the first bits of its mantissa give
-/// their index.
+/// Rows are linear in the distance within an octave: its exponent and the first bits of its mantissa give their index.
 inline WindTapes::Row WindTapes::row_of(double distance_m) noexcept {
   constexpr float kShortest_m = 1.0F / 32.0F;
   static_assert(kFirstOctave == -5 && kRowsAnOctave == 4);
@@ -161,7 +159,7 @@ void WindTapes::renew_rows(bool all) noexcept {
   next_row_ = (next_row_ + kRowsATick) % kRows;
 }
 
-/// The part that is left at some distances, of each band and of each octave of the noise, which is in several bands.
+/// The remaining part at some distances, for each band and for each octave of the noise, which is in several bands.
 void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
   const OctaveResponses responses(stroke_.octave_hz, stroke_.coherence);
   std::array<OctaveResponses::Passed, WindStroke::kMaxPens> all;
@@ -182,8 +180,7 @@ void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
       const OctaveResponses::Passed passed = responses.passed(left);
       here.late_s = responses.later_s(here.late_s, passed, all[tape]);
       for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
-        // Where nothing is measured yet: that of its own frequency, so that the first readings count at the pen at
-        // once.
+        // If nothing is measured yet: that of its own frequency, so that the first readings count at the pen at once.
         const auto own = [&] { return std::exp(-2.0 * distance_m * static_cast<double>(octave_loss_per_m_[i])); };
         const double power = all[tape].power(i);
         const double kept = power > kNothing ? passed.power(i) / power : own();
@@ -198,7 +195,7 @@ inline WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double 
   const double downwind_m = dot_product(east_m - pen.east_m, pen.south_m - south_m, stroke_.ahead);
   Found found{.place = tapes_[tape].back(std::max(downwind_m, 0.0))};
 
-  // How far the place is from where the air that was measured then is by now.
+  // The distance of the place from the present place of the air that was measured then.
   const WindSample& first = *found.place.first;
   const WindSample& second = *found.place.second;
   const double fraction = found.place.fraction;
@@ -342,7 +339,7 @@ TapeKernelPlace WindTapes::on_tape(const Found& found) const noexcept {
           .kept = found.kept};
 }
 
-/// The part that is slower than all bands.
+/// The part slower than all bands.
 WindTapes::Known WindTapes::slow_part(const WindTape::Place& place) noexcept {
   const WindSample& first = *place.first;
   const WindSample& second = *place.second;
@@ -374,8 +371,8 @@ OctaveLanes WindTapes::octaves_kept(std::size_t tape, double distance_m) const n
   return result;
 }
 
-/// The weights of the sensors follow from their places and this one (GustKriging). What is lost besides (a gust that
-/// has not come yet, a wind that has turned, the end of a tape) is lost of each sensor's own part.
+/// The weights of the sensors follow from their places and this one (GustKriging). Other losses (a gust that has not
+/// arrived yet, a wind that has turned, the end of a tape) reduce each sensor's own part.
 WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const noexcept {
   constexpr std::size_t kMost = WindStroke::kMaxPens;
   std::array<WindSample, kMost> samples;

@@ -20,18 +20,18 @@ struct CalibrationPoint {
 /// A reading of 0 stays 0: a cup that stands still does not reveal its offset. The gust is converted like the speed.
 /// Thread-safe: yes. Realtime-safe: applied_to() is.
 struct Calibration {
-  double unit_m_s = 1.0;  ///< how much one of the sensor's own units is, where its driver takes them for m/s
+  double unit_m_s = 1.0;  ///< size of the sensor's unit, if its driver takes it for m/s
   double gain = 1.0;
   double offset_m_s = 0.0;
-  std::vector<CalibrationPoint> curve{};  ///< as parse_calibration_curve() makes it; beyond its ends, on in a line
-  double north_offset_deg = 0.0;          ///< clockwise; where the sensor's mark points instead of to north
+  std::vector<CalibrationPoint> curve{};  ///< from parse_calibration_curve(); extrapolated linearly
+  double north_offset_deg = 0.0;          ///< clockwise; the true direction of the sensor's mark
   double height_factor = 1.0;             ///< height_factor(): from the sensor's height to the scene's
 
   Reading applied_to(const Reading& reading) const noexcept;
 };
 
-/// The reading in m/s (after its unit) that the calibration maps to 0: where its straight line crosses 0. May be below
-/// 0. Thread-safe and realtime-safe: yes.
+/// The reading in m/s (after its unit) that the calibration maps to 0: the zero of its straight line. Can be negative.
+/// Thread-safe and realtime-safe: yes.
 double zero_point_m_s(const Calibration& calibration) noexcept;
 
 /// Points "measured:true" in m/s, separated by blanks: "0:0 5:5.2 12:12.9". At least two, both numbers rising from each

@@ -30,11 +30,11 @@ constexpr double kMinGain = 0.2;
 constexpr double kMaxGain = 5.0;
 constexpr double kMinRSquared = 0.8;
 constexpr double kBin_m_s = 1.0;
-constexpr double kReach_m_s = 10.0;  // how far beyond the last bin the last point stands
+constexpr double kReach_m_s = 10.0;  // distance of the last point beyond the last bin
 constexpr std::size_t kMinInBin = 3;
 constexpr std::size_t kMinBins = 3;
 
-/// A number as text for a sentence.
+/// A number as text, for a sentence.
 std::string figure(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 3).ptr;
@@ -112,8 +112,8 @@ void measure_fit(std::span<const CalibrationPoint> pairs, const TruthOf& truth_o
   residual_m_s = std::sqrt(unexplained / count);
 }
 
-/// The line of least squares: about the means, so that nothing large is subtracted from something large. There are
-/// at least two different readings.
+/// The least-squares line: about the means, so that no large numbers are subtracted from each other. There are at least
+/// two different readings.
 LineFit least_squares(std::span<const CalibrationPoint> pairs) {
   const auto count = static_cast<double>(pairs.size());
   CalibrationPoint mean;
@@ -154,14 +154,14 @@ struct Bin {
   }
 };
 
-/// Is b to the right of a, far enough for a meaningful slope, and above it?
+/// Returns true if b is to the right of a, far enough for a meaningful slope, and above it.
 bool rises(const Bin& a, const Bin& b) {
   return b.mean().measured_m_s - a.mean().measured_m_s >= 0.25 * kBin_m_s &&
          b.mean().true_m_s - a.mean().true_m_s >= 0.01 * kBin_m_s;
 }
 
-/// A point at either end, since a curve is extrapolated from its last two points, and two bins may have any slope: as
-/// steep as the slower half of the pairs down to 0, and as the faster half up.
+/// Adds a point at either end, because a curve is extrapolated from its last two points, and two bins can have any
+/// slope: with the slope of the slower half of the pairs down to 0, and of the faster half up.
 void extend(std::vector<CalibrationPoint>& curve, std::vector<CalibrationPoint>& pairs, double whole_gain) {
   std::ranges::sort(pairs, {}, &CalibrationPoint::measured_m_s);
   const std::size_t half = pairs.size() / 2;
@@ -190,7 +190,7 @@ Result<StillAir, Failure> measure_still_air(std::span<const double> indicated_m_
   for (const double value : indicated_m_s) squares += (value - air.mean_m_s) * (value - air.mean_m_s);
   air.noise_m_s = std::sqrt(squares / static_cast<double>(air.count - 1));
 
-  // Moving air shows in the scatter, air that comes to rest in the difference of the two halves.
+  // Moving air shows in the scatter, air that is coming to rest in the difference of the two halves.
   const double drift_m_s =
       mean_of(indicated_m_s.subspan(air.count / 2)) - mean_of(indicated_m_s.subspan(0, air.count - air.count / 2));
   const bool is_calm = air.noise_m_s <= kMaxStillNoise_m_s && std::abs(drift_m_s) <= kMaxStillDrift_m_s;

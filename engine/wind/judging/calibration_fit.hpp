@@ -23,10 +23,10 @@ struct StillAir {
   double noise_m_s = 0.0;  ///< standard deviation
 };
 
-/// Refuses fewer than 10 readings, more scatter or drift than still air has, and more than a zero error can be.
+/// Refuses fewer than 10 readings, more scatter or drift than in still air, and an implausible zero error.
 Result<StillAir, Failure> measure_still_air(std::span<const double> indicated_m_s);
 
-/// The offset with which `calibration` makes 0 of `still_m_s`; its gain and curve stay.
+/// The offset with which `calibration` maps `still_m_s` to 0; its gain and curve do not change.
 double offset_for_zero_m_s(const Calibration& calibration, double still_m_s) noexcept;
 
 // ---- north ----
@@ -38,7 +38,7 @@ struct DirectionMean {
   double spread_deg = 0.0;  ///< circular standard deviation, sqrt(-2 ln R) (Mardia and Jupp 2000, eq. 2.3.11)
 };
 
-/// Of any directions, degrees; all fields are 0 for none.
+/// Of any directions, degrees; all fields are 0 without directions.
 DirectionMean direction_mean(std::span<const double> directions_deg) noexcept;
 
 /// The direction of a vane that is held by hand. Refuses fewer than 5 readings, and a vane that moved.
@@ -73,9 +73,8 @@ struct LineFit {
   double residual_m_s = 0.0;  ///< root mean square distance of the true speeds from the line
 };
 
-/// Least squares over pairs; those with a reading of 0 are left out. Refuses fewer than two speeds,
-/// less than 2 m/s between the slowest and the fastest, a gain that no sensor has, and pairs of which the line explains
-/// too little.
+/// Least squares over pairs; those with a reading of 0 are ignored. Refuses fewer than two speeds, less than 2 m/s
+/// between the slowest and the fastest, an implausible gain, and pairs that do not fit a line.
 Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs);
 
 /// The line through one pair and the zero point of the calibration until now. Refuses a wind below 2 m/s, and a gain
@@ -90,8 +89,8 @@ struct CurveFit {
   double residual_m_s = 0.0;
 };
 
-/// Bins of 1 m/s with at least 3 pairs each; a point beyond either end goes on as steeply as that half of the pairs.
-/// Refuses as fit_line() does, and fewer than 3 bins.
+/// Bins of 1 m/s with at least 3 pairs each; a point beyond either end has the slope of that half of the pairs. Refuses
+/// like fit_line(), and fewer than 3 bins.
 Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs);
 
 /// A speed at a time, s; the origin is the caller's.
@@ -100,7 +99,7 @@ struct TimedSpeed {
   double speed_m_s = 0.0;
 };
 
-/// Two sensors side by side: means over blocks of `block_s`, of the blocks in which both have readings. In the order of
+/// Two sensors side by side: means over blocks of `block_s`, for blocks in which both have readings. In the order of
 /// time.
 std::vector<CalibrationPoint> pair_means(std::span<const TimedSpeed> indicated, std::span<const TimedSpeed> truth,
                                          double block_s);

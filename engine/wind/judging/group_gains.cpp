@@ -8,9 +8,9 @@ namespace yuragi::wind::judging {
 namespace {
 
 constexpr double kLearnEvery_s = 1.0;
-/// A halt of the machine counts as so long at most.
+/// A halt of the machine counts as at most this long.
 constexpr double kMaxStep_s = 10.0;
-/// A deviation may be off by so much from having been written and read.
+/// Tolerance of a deviation that was written and read.
 constexpr double kRounding = 1e-9;
 
 }  // namespace
@@ -33,7 +33,7 @@ void GroupGains::learn(std::span<const Member> members, double step_s) noexcept 
   double least_learnt_s = settings_.memory_s;
   for (std::size_t i = 0; i < count; ++i) {
     if (!members[i].is_in) continue;
-    // A sensor without wind has no logarithm; nor do the others measure the same as it.
+    // A sensor without wind has no logarithm; and the others are not in the same wind.
     if (!(members[i].mean_m_s > 0.0)) return;
     ++in_count;
     sum_ln += std::log(members[i].mean_m_s) - learnt_[i].deviation;
@@ -47,7 +47,7 @@ void GroupGains::learn(std::span<const Member> members, double step_s) noexcept 
   const auto step_of = [&](std::size_t i) {
     return part * (std::log(members[i].mean_m_s) - learnt_[i].deviation - wind_ln);
   };
-  // The steps add up to 0. Where one would pass the bound all are shortened, so that they still do.
+  // The steps add up to 0. If one would pass the bound all are shortened, so that they still do.
   double shortened = 1.0;
   for (std::size_t i = 0; i < count; ++i) {
     if (!members[i].is_in) continue;

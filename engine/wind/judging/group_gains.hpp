@@ -12,20 +12,20 @@
 namespace yuragi::wind::judging {
 
 struct GroupGainsSettings {
-  /// What was learnt counts for as long; the first time constant while little is known.
+  /// The memory; also the first time constant, while little is known.
   double memory_s = 4.0 * 3600.0;
   double first_s = 900.0;
-  /// In less wind nothing is learnt: the thresholds of cup anemometers would be taken for gains.
+  /// In less wind nothing is learnt: the thresholds of cup anemometers would be mistaken for gains.
   double least_m_s = 2.0;
-  /// A sensor counts as reading at most so many times the group's wind, or its inverse.
+  /// Limit of a sensor's factor relative to the group's wind, or of its inverse.
   double most_factor = 1.5;
 };
 
-/// Learns how many times the group's wind each sensor reads, and levels the sensors to their common mean (W41).
+/// Learns each sensor's factor relative to the group's wind, and levels the sensors to their common mean (W41).
 ///
 /// The group's wind is the geometric mean of the sensors after levelling, so that it does not change when one goes or
-/// comes back. What is learnt leaves the geometric mean of all gains at 1. Causal; slow: no step.
-/// Thread-safe: no. Realtime-safe after construction: yes, but for restore().
+/// comes back. What is learnt leaves the geometric mean of all gains at 1. Causal, slow, without steps. Thread-safe:
+/// no. Realtime-safe after construction: yes, but for restore().
 class GroupGains {
  public:
   /// A sensor at a moment. Its mean is of its readings before levelling.
@@ -35,7 +35,7 @@ class GroupGains {
   };
   struct Learnt {
     double deviation = 0.0;  ///< ln of how many times the group's wind it reads
-    double learnt_s = 0.0;   ///< for how long it was learnt
+    double learnt_s = 0.0;   ///< duration of the learning
   };
 
   explicit GroupGains(std::size_t sensor_count, const GroupGainsSettings& settings = {});
@@ -43,22 +43,22 @@ class GroupGains {
   /// Learns about once a second from two members or more. `members`: one for each sensor.
   void advance(MonoTime now, std::span<const Member> members) noexcept;
 
-  /// What a sensor's speeds are multiplied by; exactly 1 if nothing was learnt.
+  /// The factor on a sensor's speeds; exactly 1 if nothing was learnt.
   double gain(std::size_t sensor) const noexcept { return gains_[sensor]; }
-  /// How many times the group's wind it reads; exactly 1 if nothing was learnt.
+  /// Its reading relative to the group's wind; exactly 1 if nothing was learnt.
   double reads_times_group(std::size_t sensor) const noexcept;
-  /// Is what was learnt the most that is levelled? It may read even more, or less.
+  /// Returns true if the learnt factor is at the limit of levelling. The sensor can differ even more.
   bool is_at_bound(std::size_t sensor) const noexcept;
 
   std::span<const Learnt> learnt() const noexcept { return learnt_; }
 
-  /// A sensor reads otherwise from now on: the group learns anew, as fast as at first, from what it has, without a
-  /// jump.
+  /// Call when a sensor's readings have changed: the group learns again, as fast as at first, from the present state,
+  /// without a jump.
   void relearn(std::size_t sensor) noexcept { learnt_[sensor].learnt_s = 0.0; }
 
-  /// Goes on from what an earlier run learnt: one for each sensor; all 0: nothing is known of it. The mean of the known
-  /// is made 0: a sensor may have gone for good. False, and nothing changes, if a value is not finite, or a
-  /// deviation is out of bounds, before or after that.
+  /// Continues from an earlier run's result: one for each sensor; all 0: nothing is known of it. The mean of the known
+  /// ones is set to 0, because a sensor can have been removed. Returns false, and changes nothing, if a value is not
+  /// finite, or a deviation is out of bounds, before or after that.
   bool restore(std::span<const Learnt> learnt);
 
  private:
@@ -72,12 +72,12 @@ class GroupGains {
   std::optional<MonoTime> learnt_at_;
 };
 
-/// Is anything known of a sensor?
+/// Returns true if anything is known of a sensor.
 constexpr bool is_known(const GroupGains::Learnt& learnt) noexcept {
   return learnt.learnt_s > 0.0 || learnt.deviation != 0.0;
 }
 
-/// What was learnt of sensors, by their names.
+/// The learnt factors of sensors, by name.
 using LearntByName = std::map<std::string, GroupGains::Learnt>;
 
 }  // namespace yuragi::wind::judging

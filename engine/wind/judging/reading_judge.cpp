@@ -9,16 +9,15 @@ namespace {
 
 constexpr double kRobustDeviations = 5.0;
 constexpr double kDeviationPerMad = 1.4826;
-/// A sensor whose values are random has a large deviation, too: beyond so many times the least spike every reading is
+/// A sensor with random values has a large deviation, too: beyond this many times the minimum spike every reading is
 /// suspect.
 constexpr double kMaxPerMin = 2.0;
-/// A step that has been repeated so often is accepted, however quick: recordings can be played a hundred times too
-/// fast.
+/// A step that was repeated this often is accepted, however fast: recordings can be played at a hundred times the
+/// speed.
 constexpr std::size_t kEnoughRepeats = 20;
-/// Readings older than this are no measure for new ones.
+/// Older readings are not compared with new ones.
 constexpr double kForgotten_s = 600.0;
-/// The number of readings that the share of bad ones is taken over, and the shares at which a sensor is rejected and
-/// accepted again.
+/// The number of readings for the share of bad ones, and the shares at which a sensor is rejected and accepted again.
 constexpr double kReadingsCounted = 20.0;
 constexpr double kGiveUpShare = 0.3;
 constexpr double kTrustShare = 0.05;
@@ -28,11 +27,11 @@ constexpr double kStill_m_s = 0.05;
 /// The turbulence that a sensor's steps are compared with, and how much longer a coarse one may repeat itself.
 constexpr double kLittleTurbulence = 0.05;
 constexpr double kCoarsePatience = 10.0;
-/// How many times longer than it usually repeats a value; and for a sensor that has never sent another one.
+/// The factor on its usual time of repetition; and for a sensor that has never sent another value.
 constexpr double kRepeatingPatience = 10.0;
 constexpr double kNeverMovedPatience = 20.0;
 constexpr double kRunsRemembered = 16.0;
-/// A gap between two readings counts as a calm for so long at most.
+/// A gap between two readings counts as a calm of at most this length.
 constexpr double kMaxStep_s = 600.0;
 constexpr double kDay_s = 86400.0;
 
@@ -43,7 +42,7 @@ double median(std::array<double, N> values) noexcept {
   return *middle;
 }
 
-/// Without a direction only the speed is compared: as if all winds came from one direction.
+/// Without a direction only the speed is compared: as if all winds had one direction.
 Vector vector_of(const Reading& reading) noexcept {
   return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
@@ -66,7 +65,7 @@ bool ReadingJudge::judge(const Reading& reading, std::optional<double> others_m_
 }
 
 void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
-  // More readings than the memory spans change nothing further.
+  // More readings than the memory spans have no further effect.
   const auto counted = std::min(static_cast<double>(readings), 10.0 * kReadingsCounted);
   for (double i = 0.0; i < counted; ++i) count(true);
   if (is_implausible_ && fault_ <= ReadingFault::kImplausible) fault_ = ReadingFault::kImplausible;
@@ -76,7 +75,7 @@ void ReadingJudge::recalibrate(const Reading& before, const Reading& after) noex
   believed_ = 0;
   suspicion_.reset();
   if (fault_ == ReadingFault::kSpike) fault_ = ReadingFault::kNone;
-  if (same_ && says_the_same(*same_, before)) same_ = after;
+  if (same_ && has_same_values(*same_, before)) same_ = after;
   if (!(before.speed_m_s > 0.0) || !(after.speed_m_s > 0.0)) return;
   const double factor = after.speed_m_s / before.speed_m_s;
   resolution_m_s_ *= factor;
@@ -153,7 +152,7 @@ bool ReadingJudge::is_suspect(Vector wind) const noexcept {
   return speed_of(wind - usual) > allowed_m_s;
 }
 
-/// Has the step lasted for as long as the wind would take to make it, and been repeated?
+/// Returns true if the step has lasted for as long as the wind needs for it, and was repeated.
 bool ReadingJudge::is_confirmed(double time_s) const noexcept {
   const double needed_s = suspicion_->jump_m_s / settings_.slew_m_s2;
   return suspicion_->repeats >= kEnoughRepeats ||
@@ -171,7 +170,7 @@ void ReadingJudge::count(bool is_bad) noexcept {
 }
 
 bool ReadingJudge::check_frozen(const Reading& reading, double time_s) noexcept {
-  if (!same_ || !says_the_same(reading, *same_)) {
+  if (!same_ || !has_same_values(reading, *same_)) {
     if (same_) {
       const double step_m_s = std::abs(reading.speed_m_s - same_->speed_m_s);
       if (step_m_s > 0.0) resolution_m_s_ = resolution_m_s_ > 0.0 ? std::min(resolution_m_s_, step_m_s) : step_m_s;
@@ -193,10 +192,10 @@ bool ReadingJudge::check_frozen(const Reading& reading, double time_s) noexcept 
          time_s - same_since_s_ >= longest_s;
 }
 
-/// How many times longer than usual this sensor may repeat its value.
+/// The factor on this sensor's usual time of repetition.
 double ReadingJudge::frozen_patience() const noexcept {
   if (!usual_run_s_) return kNeverMovedPatience;
-  // A resolution as coarse as the turbulence repeats the same number by nature.
+  // A resolution as coarse as the turbulence normally repeats numbers.
   const bool is_coarse = same_ && resolution_m_s_ > kLittleTurbulence * same_->speed_m_s;
   return is_coarse ? kCoarsePatience : 1.0;
 }

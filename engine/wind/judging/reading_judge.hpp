@@ -23,17 +23,17 @@ inline constexpr std::array<std::string_view, 5> kReadingFaultNames = {"none", "
                                                                        "seized"};
 
 struct JudgeSettings {
-  /// Faster than this is out of the sensor's range.
+  /// A higher speed is out of the sensor's range.
   double max_speed_m_s = kMaxPlausibleSpeed_m_s;
-  /// A step is accepted once it has been repeated for as long as a wind of this acceleration would take to make it.
+  /// A step is accepted once it has been repeated for as long as a wind of this acceleration needs for it.
   double slew_m_s2 = 5.0;
-  /// What differs by less than this and half the wind is no spike.
+  /// A reading that differs by less than this, or by less than half the wind, is not a spike.
   double least_spike_m_s = 4.0;
-  /// The same for so many readings, and for so long, is frozen; longer where the sensor is one that repeats itself.
+  /// The same value for this many readings, and this long, is frozen; longer for a sensor that often repeats values.
   std::size_t frozen_readings = 20;
   double frozen_s = 30.0;
-  /// A sensor that reads 0 for so long has seized, if the other sensors measure wind; a single sensor, after the longer
-  /// time, if the last day was windy (nights are calm, too).
+  /// A sensor that reads 0 for this long has seized, if the other sensors measure wind; a single sensor, after the
+  /// longer time, if the last day was windy (nights are calm, too).
   double seized_s = 7200.0;
   double seized_alone_s = 43200.0;
   double windy_m_s = 3.0;
@@ -48,38 +48,37 @@ struct JudgeSettings {
 /// times, it was a step and is accepted from then on; otherwise it was a spike and is rejected.
 /// Implausible: three of ten of its last 20 or so readings were spikes or out of range, until one of twenty is.
 /// Frozen: bit for bit the same speed, direction and gust, above a calm, and ten times longer than the sensor usually
-/// stays with a value: one that is asked more often than it measures, or whose resolution is coarse for the wind's
-/// turbulence, repeats itself by nature. One that never sent another value has twenty times the time: it may be a
-/// simulator whose wind is steady. After ten minutes of silence a freeze and a spike are judged anew.
-/// Thread-safe: no. Realtime-safe: yes.
+/// keeps a value: one that is polled more often than it measures, or whose resolution is coarse for the wind's
+/// turbulence, normally repeats values. One that never sent another value has twenty times the time: it can be a
+/// simulator with a steady wind. After ten minutes of silence a freeze and a spike are judged again. Thread-safe: no.
+/// Realtime-safe: yes.
 class ReadingJudge {
  public:
   explicit ReadingJudge(const JudgeSettings& settings = {}) : settings_(settings) {}
 
-  /// True: accept the reading. Readings come in the order of their times; one that is late is rejected. `others_m_s`:
-  /// the speed by the other sensors, where there are any.
+  /// Returns true if the reading is accepted. Readings must be in the order of their times; a late one is rejected.
+  /// `others_m_s`: the speed by the other sensors, if there are any.
   bool judge(const Reading& reading, std::optional<double> others_m_s = {}) noexcept;
 
-  /// Counts readings that were refused before they came here as impossible.
+  /// Counts readings that were already refused as impossible.
   void count_impossible(std::uint64_t readings) noexcept;
 
-  /// Judges by other settings from now on; what was found out about the sensor stays.
+  /// Changes the settings; the findings about the sensor are kept.
   void change(const JudgeSettings& settings) noexcept { settings_ = settings; }
 
-  /// The sensor's calibration has changed: its last reading, which was `before`, would be `after`. Readings until now
-  /// are no measure for the height of those that follow, so that the change is no spike; how long the sensor has
-  /// repeated its value or stood still, and how many of its readings were bad, stays known.
+  /// The sensor's calibration has changed: its last reading, which was `before`, would be `after`. Earlier readings are
+  /// then not compared with later ones, so that the change is not a spike; the times of repetition and standstill, and
+  /// the share of bad readings, are kept.
   void recalibrate(const Reading& before, const Reading& after) noexcept;
 
-  /// What is wrong at the moment: kImplausible, kFrozen or kSeized for as long as it lasts, kSpike while a suspect is
-  /// held back.
+  /// The present fault: kImplausible, kFrozen or kSeized for as long as it lasts, kSpike while a suspect is held back.
   ReadingFault fault() const noexcept { return fault_; }
 
   /// Readings that turned out to be spikes.
   std::uint64_t spikes() const noexcept { return spikes_; }
 
-  /// For the fault's reason: how often and for how long it has repeated its value; for how long it has read 0; which
-  /// part of its last readings were spikes or out of range.
+  /// For the fault's reason: number and duration of repetitions of its value; duration of reading 0; share of spikes
+  /// and values out of range among its last readings.
   std::size_t same_count() const noexcept { return same_count_; }
   double same_for_s() const noexcept { return same_ ? last_s_ - same_since_s_ : 0.0; }
   double still_for_s() const noexcept { return still_s_; }
@@ -119,13 +118,13 @@ class ReadingJudge {
   std::optional<Reading> same_;  ///< what is repeated
   double same_since_s_ = 0.0;
   std::size_t same_count_ = 0;
-  double resolution_m_s_ = 0.0;        ///< the smallest step seen; 0: none yet
+  double resolution_m_s_ = 0.0;        ///< the smallest step; 0: none yet
   std::optional<double> usual_run_s_;  ///< how long it stays with a value; empty: it never left one
 
   bool is_still_ = false;
   bool is_seized_ = false;
-  double still_s_ = 0.0;        ///< how long it has stood still
-  double windy_still_s_ = 0.0;  ///< and of this, while the others had wind
+  double still_s_ = 0.0;        ///< duration of its standstill
+  double windy_still_s_ = 0.0;  ///< and the part of it in which the others had wind
   double usual_m_s_ = 0.0;      ///< mean speed of the last day in which it moved
 
   double last_s_ = 0.0;

@@ -11,11 +11,11 @@ namespace yuragi::wind::judging {
 enum class SensorState : std::uint8_t {
   kConnecting,    ///< its device is searched for, or has sent no reading yet
   kLive,          ///< readings arrive and are accepted
-  kStale,         ///< its device is there, but silent for longer than its own interval explains
-  kFrozen,        ///< its value does not change at all
+  kStale,         ///< its device is connected, but silent for longer than its own interval explains
+  kFrozen,        ///< its value does not change
   kSeized,        ///< it reads 0 for hours in a wind
   kImplausible,   ///< many impossible readings, or it contradicts the other sensors
-  kDisconnected,  ///< it sent readings, and its device has gone
+  kDisconnected,  ///< it sent readings, and its device is disconnected
   kSimulated,     ///< as live, but a simulation
   kReplayed,      ///< as live, but a recording
 };

@@ -6,7 +6,7 @@ namespace yuragi::wind::judging {
 namespace {
 
 constexpr double kCountEvery_s = 1.0;
-/// A halt of the machine counts as so long at most.
+/// A halt of the machine counts as at most this long.
 constexpr double kMaxCount_s = 10.0;
 
 /// A judgement with a memory: it needs the whole patience to change either way.
@@ -57,7 +57,7 @@ void SensorVote::advance(MonoTime now) noexcept {
         std::ranges::any_of(voters_, [&](const Voter& other) { return &other != &voter && can_be_compared(other); });
     if (has_others) voter.others_m_s = median_without(&voter);
 
-    // Without a majority the earlier result stays.
+    // Without a majority the previous result is kept.
     const bool is_compared = can_be_compared(voter);
     if (majority && is_compared) {
       const double sign = agree(voter.mean_m_s, *majority) ? -1.0 : 1.0;
@@ -82,7 +82,7 @@ bool SensorVote::agree(double a_m_s, double b_m_s) const noexcept {
   return std::max(a_m_s, b_m_s) <= settings_.factor * std::min(a_m_s, b_m_s) + settings_.offset_m_s;
 }
 
-/// The median of all, where more than half of at least three agree with it.
+/// The median of all, if more than half of at least three agree with it.
 std::optional<double> SensorVote::majority_m_s() noexcept {
   const double middle_m_s = median_without(nullptr);
   const auto for_it = std::ranges::count_if(means_m_s_, [&](double mean) { return agree(mean, middle_m_s); });
@@ -90,7 +90,7 @@ std::optional<double> SensorVote::majority_m_s() noexcept {
   return middle_m_s;
 }
 
-/// The (lower) median of the means that can be compared; 0 where there is none.
+/// The (lower) median of the means that can be compared; 0 if there is none.
 double SensorVote::median_without(const Voter* left_out) noexcept {
   means_m_s_.clear();
   for (const Voter& voter : voters_) {

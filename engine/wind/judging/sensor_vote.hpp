@@ -17,23 +17,23 @@ enum class Vote : std::uint8_t {
 };
 
 struct VoteSettings {
-  /// What is compared are the mean speeds of so long.
+  /// The compared mean speeds are over this time.
   double memory_s = 300.0;
-  /// Two means agree as long as neither is above this many times the other and so much more: sensors stand at
-  /// different places, and a courtyard has half the wind of a roof.
+  /// Two means agree unless one is above this factor times the other plus this difference: sensors are at different
+  /// places, and a courtyard has half the wind of a roof.
   double factor = 3.0;
   double offset_m_s = 3.0;
-  /// For how long one must differ before it is outvoted, and agree before it is accepted again.
+  /// The time for which a sensor must differ before it is outvoted, and agree before it is accepted again.
   double patience_s = 600.0;
 };
 
 /// Compares the sensors of an installation by their slow mean speeds.
 ///
-/// Three or more can vote: where more than half of them agree with the median of all, one that does not agree with it,
-/// for as long as `patience_s`, is outvoted; it must agree for as long to be accepted again, and while there is no such
-/// majority its state is kept. Without a majority (two sensors, or all differ) those that differ are disputed, and all
-/// are still used. A sensor takes part once it has sent readings for `memory_s` without a longer gap.
-/// Thread-safe: no. Realtime-safe after construction: yes.
+/// Three or more can vote: if more than half of them agree with the median of all, one that does not agree with it for
+/// `patience_s` is outvoted; it must agree for as long to be accepted again, and while there is no such majority its
+/// state is kept. Without a majority (two sensors, or all differ) those that differ are disputed, and all are still
+/// used. A sensor takes part once it has sent readings for `memory_s` without a longer gap. Thread-safe: no.
+/// Realtime-safe after construction: yes.
 class SensorVote {
  public:
   explicit SensorVote(std::size_t sensor_count, const VoteSettings& settings = {});
@@ -44,8 +44,8 @@ class SensorVote {
   /// Whether a sensor can be compared at the moment: it is live, not a recording, and not frozen.
   void set_comparable(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_comparable = takes_part; }
 
-  /// Forgets the mean speed of a sensor, which counts otherwise from now on: it takes part again after `memory_s`. What
-  /// was decided about it stays until then.
+  /// Forgets the mean speed of a sensor whose readings have changed: it takes part again after `memory_s`. The decision
+  /// about it is kept until then.
   void forget_mean(std::size_t sensor) noexcept;
 
   /// Advances to `now`. Counts votes about once a second.
@@ -53,11 +53,11 @@ class SensorVote {
 
   Vote vote_on(std::size_t sensor) const noexcept;
 
-  /// Is it compared at the moment, and does it agree with the majority, or, without one, with all? Unlike vote_on()
+  /// Returns true if it is being compared, and agrees with the majority, or, without one, with all. Unlike vote_on()
   /// without patience.
   bool agrees(std::size_t sensor) const noexcept { return voters_[sensor].agrees; }
 
-  /// Its mean speed, and the median of those of the others that can be compared; nothing where there is none.
+  /// Its mean speed, and the median of the others that can be compared; nullopt if there is none.
   double mean_m_s(std::size_t sensor) const noexcept { return voters_[sensor].mean_m_s; }
   std::optional<double> others_m_s(std::size_t sensor) const noexcept { return voters_[sensor].others_m_s; }
 
@@ -68,7 +68,7 @@ class SensorVote {
     double measured_s = 0.0;
     double mean_m_s = 0.0;
     std::optional<double> others_m_s;
-    double outvoted_s = 0.0;  ///< time of contradiction, less time of agreement
+    double outvoted_s = 0.0;  ///< time of contradiction, minus time of agreement
     double disputed_s = 0.0;
     bool is_outvoted = false;
     bool agrees = false;

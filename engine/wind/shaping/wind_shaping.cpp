@@ -11,25 +11,25 @@ namespace {
 
 /// A critically damped step has covered 95 % after 4.75 time constants (engine/METHOD.md M18).
 constexpr double kPhaseOfArrival = 4.75;
-/// The time that the floor's gain takes to follow the mean.
+/// The time in which the floor's gain follows the mean.
 constexpr double kFloorGainOver_s = 5.0;
 /// A front is detected within this, so that the gain of a calm is not applied to a storm ...
 constexpr double kQuickOver_s = 4.0;
-/// ... and is distinguished from a gust by being so many times the slow mean.
+/// ... and is distinguished from a gust by being this many times the slow mean.
 constexpr double kFrontTimesMean = 2.0;
 /// Longer than every transition: the first call starts at the targets.
 constexpr double kForEver_s = 1e12;
 
 constexpr double kRememberEvery_s = 1.0;
-/// So much live wind must be known (or this share of a short memory) until the site's percentiles have full weight.
+/// This much live wind (or this share of a short memory) is needed for the full weight of the site's percentiles.
 constexpr double kKnownAfter_s = 6.0 * 3600.0;
 constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
 constexpr double kStrong = 0.95;
-/// Below what a sensor can tell from calm.
+/// Below the resolution of sensors in a calm.
 constexpr double kMinMedian_m_s = 0.05;
 
-/// Advances the filter, and ends exactly at the target, not ever nearer to it.
+/// Advances the filter, and ends exactly at the target.
 void follow_to_the_end(math::CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
   constexpr double kArrived = 1e-6;
   value.step(target, kPhaseOfArrival / over_s, dt_s);
@@ -98,7 +98,7 @@ void WindShaping::change(const WindShapingSettings& settings) noexcept {
   change_ = {};
 }
 
-/// Goes on from the settings before a change to those after it, and ends exactly at those.
+/// Moves from the settings before a change to the new ones, and ends exactly at those.
 void WindShaping::change_strengths(double dt_s) noexcept {
   if (change_.value == 1.0) return;
   follow_to_the_end(change_, 1.0, kChangeOver_s, dt_s);
@@ -119,14 +119,14 @@ void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site
   const double dt_s = has_begun_ ? std::max(0.0, seconds(state.time - time_)) : 0.0;
   if (!has_begun_ || state.time > time_) time_ = state.time;
 
-  // The slow part: means, what the site is like, and the gains that follow from both.
+  // The slow part: means, the site's distribution, and the gains from both.
   const double speed_m_s = speed_of(state.wind);
   const double way_s = std::exchange(has_begun_, true) ? dt_s : kForEver_s;
   change_strengths(dt_s);
   mean_.step(speed_m_s, kPhaseOfArrival / settings_.over_s, way_s);
   quick_mean_.step(speed_m_s, kPhaseOfArrival / kQuickOver_s, way_s);
   live_s_ = is_of_site && state.live_weight > 0.5 ? live_s_ + dt_s : 0.0;
-  // By then the mean has forgotten the wind before.
+  // By then the mean has forgotten the previous wind.
   if (live_s_ > settings_.over_s) remember(mean_.value, dt_s);
   follow(state.live_weight, is_open, way_s);
 
@@ -136,7 +136,7 @@ void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site
   hold_back(wind);
 }
 
-/// Site gain, floor and opening: on all wind that is over the ground now. And the gusts' own.
+/// Site gain, floor and opening: on all wind over the ground at this moment. Also the factor on gusts.
 void WindShaping::apply_gains(ground::DrivingWind& wind) const noexcept {
   const double gain = site_.value * floor_.value * opening_.value;
   wind.state.wind = gain * wind.state.wind;
@@ -150,7 +150,7 @@ void WindShaping::apply_gains(ground::DrivingWind& wind) const noexcept {
   wind.state.wind = wind_where_measured(wind.ground, wind.stroke, *noise_);
 }
 
-/// The ceiling: on the wind measured now, for as long as it crosses the ground.
+/// The ceiling: on the wind measured now, while it crosses the ground.
 void WindShaping::hold_back(ground::DrivingWind& wind) noexcept {
   speed_m_s_ = speed_of(wind.state.wind);
   ceiling_gain_ = ceiling_.gain(speed_m_s_);
@@ -219,8 +219,8 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
   follow_to_the_end(openness_, is_open ? 1.0 : 0.0, settings_.fade_s, dt_s);
 }
 
-/// Adds the floor's breeze: a mean from where the wind last came, and gusts of its own, which it carries along. Their
-/// power is the difference between a wind of the floor's strength and one without the breeze.
+/// Adds the floor's breeze: a mean from the last wind direction, and its own gusts, which it carries. Their power is
+/// the difference between a wind of the floor's strength and one without the breeze.
 void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
   const double breeze_m_s = std::clamp(breeze_.value, 0.0, now_.floor_m_s);
   if (breeze_m_s <= 0.0 && blown_m_.u_m_s == 0.0 && blown_m_.v_m_s == 0.0) return;

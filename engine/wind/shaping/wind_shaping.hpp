@@ -12,19 +12,19 @@
 
 namespace yuragi::wind::shaping {
 
-/// The speeds that a site's own wind is to be brought to: its 50th and its 95th percentile.
+/// The target speeds of a site's own wind: its 50th and its 95th percentile.
 struct SiteRange {
-  double median_m_s = 0.0;  ///< 0: no site gain at all
+  double median_m_s = 0.0;  ///< 0: no site gain
   double strong_m_s = 0.0;  ///< 0: the median's gain for every wind; otherwise above median_m_s
-  double most_gain = 3.0;   ///< at least 1; and no gain is below 1 / most_gain
+  double most_gain = 3.0;   ///< at least 1; gains are at least 1 / most_gain
 };
 
 struct WindShapingSettings {
-  double floor_m_s = 0.0;  ///< the least mean speed; 0: none
+  double floor_m_s = 0.0;  ///< the minimum mean speed; 0: none
   SiteRange site = {};
   double site_memory_s = 7.0 * 86400.0;  ///< of the site's speeds
   double over_s = 120.0;                 ///< how long floor and site gain take to follow the wind's mean
-  double gusts = 1.0;                    ///< the scenes' gusts over the real ones, 0 to 3; 1: as strong
+  double gusts = 1.0;                    ///< factor on the real gusts, 0 to 3
   SoftCeiling ceiling = {};
   double closed_level = 0.0;          ///< outside of opening hours, 0 to 1: the part of the wind that is left
   double fade_s = 300.0;              ///< how long opening and closing take
@@ -32,19 +32,19 @@ struct WindShapingSettings {
   double length_m = 57.0;             ///< and its integral length scale
 };
 
-/// What is at work, as of the last shape().
+/// The active effects, as of the last shape().
 struct WindShapingReport {
   double mean_m_s = 0.0;         ///< slow mean of the real wind
-  double shaped_mean_m_s = 0.0;  ///< what site gain and floor make of it
+  double shaped_mean_m_s = 0.0;  ///< the mean after site gain and floor
   double site_gain = 1.0;
   double floor_gain = 1.0;
   double breeze_m_s = 0.0;  ///< what the floor adds
   double gusts = 1.0;       ///< how strong the gusts are, compared with the real ones
   double opening = 1.0;     ///< the factor on the wind: closed_level when closed, 1 when open
-  double openness = 1.0;    ///< 0 when closed, 1 when open, whatever closed_level is
+  double openness = 1.0;    ///< 0 when closed, 1 when open, for any closed_level
   double speed_m_s = 0.0;   ///< of the wind at this moment, before the ceiling
   double ceiling_gain = 1.0;
-  double median_m_s = 0.0;  ///< the site's own, as far as it is remembered
+  double median_m_s = 0.0;  ///< the site's own, from its memory
   double strong_m_s = 0.0;
   double known_s = 0.0;  ///< time that is remembered
 };
@@ -52,18 +52,17 @@ struct WindShapingReport {
 /// From the real wind to the one that moves the scenes: for days without wind, storms and nights.
 ///
 ///  1. Site gain: the wind is made stronger or weaker by a factor that takes the site's median to `site.median_m_s`
-///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
-///     the factor stays. It grows from 1 during the first hours of live wind, and is 1 for the default wind.
-///  2. Floor: a mean below it is raised to it by a factor of up to kMaxFloorGain; what then still lacks is a breeze
-///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
-///     gusts on: those that no sensor measured are others from then on than in the real wind.
-///  3. Opening: outside of opening hours only a part is left.
-///  4. Ceiling: SoftCeiling where the wind is measured. Its factor is written on the tapes with the wind that it holds
-///     back, so that a gust crosses the ground as it was cut.
+///     and its 95th percentile to `site.strong_m_s`; between the two the mean is interpolated linearly, and beyond them
+///     the factor is constant. It grows from 1 during the first hours of live wind, and is 1 for the default wind.
+///  2. Floor: a mean below it is raised to it by a factor of up to kMaxFloorGain; the rest is a breeze from the last
+///  wind direction, with the turbulence of the climate at that level. It carries the gusts: those that no sensor
+///  measured then differ from the real wind's.
+///  3. Opening: outside of opening hours only a part remains. 4. Ceiling: SoftCeiling at the place of measurement. Its
+///  factor is written on the tapes with the wind, so that a limited gust crosses the ground unchanged.
 ///
-/// A factor never turns the wind. Site gain, floor and opening are slow, critically damped: they never jump, whatever
-/// the wind, the clock or `is_open` does. What is switched off leaves the wind as it is, bit for bit. Finite for a
-/// finite wind. Thread-safe: no. Realtime-safe: all but construction.
+/// A factor never turns the wind. Site gain, floor and opening are slow, critically damped: they never jump for any
+/// wind, clock or `is_open`. A step that is off does not change the wind, bit for bit. Finite for a finite wind.
+/// Thread-safe: no. Realtime-safe: all but construction.
 class WindShaping {
  public:
   static constexpr double kMaxFloorGain = 3.0;
@@ -72,23 +71,24 @@ class WindShaping {
   /// `noise`: the one that the estimator and the scenes have.
   WindShaping(const WindShapingSettings& settings, std::shared_ptr<const turbulence::GustNoise> noise);
 
-  /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
-  /// its wind and `is_open` say, without a way there. `is_of_site`: live wind is what the site has, and is remembered.
+  /// Shapes the wind of wind.state.time. A time that goes back counts as no passed time. The first call starts at the
+  /// targets for its wind and `is_open`. `is_of_site`: live wind is the site's, and is remembered.
   void shape(ground::DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
 
-  /// Shapes by other settings from now on, over the next seconds (kChangeOver_s): what is remembered of the site stays,
-  /// and nothing jumps. Turbulence and length of the breeze stay as they were constructed. Realtime-safe: yes.
+  /// Changes the settings, over the next seconds (kChangeOver_s): the memory of the site is kept, and nothing jumps.
+  /// Turbulence and length of the breeze do not change. Realtime-safe: yes.
   void change(const WindShapingSettings& settings) noexcept;
 
   const WindShapingSettings& settings() const noexcept { return settings_; }
   WindShapingReport report() const noexcept;
 
-  /// The site's speeds (slow means of the live wind), to be kept over a restart, and back, before the first shape().
+  /// The site's speeds (slow means of the live wind), for saving over a restart, and for restoring before the first
+  /// shape().
   const SpeedMemory& memory() const noexcept { return memory_; }
   bool restore(std::span<const double> times_s) noexcept;
 
  private:
-  /// The settings that act at once, as far as a change of them has come.
+  /// The settings that act at once, at the present progress of a change.
   struct Strengths {
     double floor_m_s = 0.0;
     double gusts = 1.0;
@@ -106,18 +106,18 @@ class WindShaping {
   void hold_back(ground::DrivingWind& wind) noexcept;
 
   WindShapingSettings settings_;
-  Strengths from_, now_;                ///< before a change, and as far as it has come
-  math::CriticallyDamped change_{1.0};  ///< how far it has come
+  Strengths from_, now_;                ///< before a change, and at its present progress
+  math::CriticallyDamped change_{1.0};  ///< progress of the change
   SoftCeiling ceiling_;                 ///< of now_
   std::shared_ptr<const turbulence::GustNoise> noise_;
   turbulence::GustVariances along_, across_;  ///< of the breeze
   SpeedMemory memory_;
-  double live_s_ = 0.0;      ///< for how long the wind has been a sensor's
+  double live_s_ = 0.0;      ///< duration of the sensors' wind
   double unstored_s_ = 0.0;  ///< time since the memory was updated
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   math::CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
   math::CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0}, openness_{1.0};
-  Vector blown_m_;            ///< how far the breeze has carried the gusts besides
+  Vector blown_m_;            ///< distance by which the breeze has also carried the gusts
   double blown_way_m_ = 0.0;  ///< and along how much of a way
   double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;
   MonoTime time_{};

@@ -17,15 +17,15 @@
 namespace yuragi::wind::turbulence {
 namespace {
 
-/// The long tile, the middle one and the short one of a chain: their periods, in middle ones, and the cycles an edge of
-/// their longest waves. By what angle each of the six is turned: they differ by 0.2 rad or more, quarter turns aside.
+/// The long tile, the middle one and the short one of a chain: their periods, in those of the middle one, and the
+/// cycles an edge of their longest waves. The turns of the six: they differ by 0.2 rad or more, modulo quarter turns.
 constexpr std::array kPeriods = {8.0, 1.0, 0.125};
 constexpr std::array kFirstCycles = {1.0, 2.0, 16.0};
 constexpr std::array<std::size_t, 3> kFirstOctave = {0, GustNoise::kLongOctaves,
                                                      GustNoise::kTileOctaves - GustNoise::kShortOctaves};
 constexpr std::array kTurns_rad = {2.0, 0.0, 0.7, 3.0, 1.0, 1.2};
 
-/// The way repeats after so many middle tiles: one octave above its shortest waves the long tiles begin.
+/// The way repeats after this many middle tiles: the long tiles begin one octave above its shortest waves.
 constexpr double kTilesPerWay = 8.0 * static_cast<double>(std::size_t{1} << GustNoise::kWayOctaves);
 constexpr std::size_t kWaySamples = std::size_t{16} << GustNoise::kWayOctaves;
 constexpr double kBeta = 5.0 / 3.0;
@@ -35,11 +35,11 @@ constexpr double kStrengthFromCycles = 5.12;
 constexpr double kStrengthToCycles = 20.48;
 constexpr std::size_t kStrengthSamples = 128;
 
-/// An octave weaker than this is not read.
+/// A weaker octave is not read.
 constexpr float kNothing_m_s = 1e-4F;
 
-/// The mean square of how a vector's components rise along themselves from sample to sample. Between two rows, of which
-/// one rises by a and the other by b, that is (a^2 + a b + b^2) / 3.
+/// The mean square of the rise of a vector's components along themselves from sample to sample. Between two rows, one
+/// of which rises by a and the other by b, it is (a^2 + a b + b^2) / 3.
 double rise_variance(const noise::VectorTile2& tile) {
   const std::size_t size = tile.x.size;
   const std::size_t last = size - 1;  // a power of two less one
@@ -63,8 +63,8 @@ Vector turned(Vector unit, double along, double across) noexcept {
   return {along * unit.u_m_s - across * unit.v_m_s, along * unit.v_m_s + across * unit.u_m_s};
 }
 
-/// An octave of a chain's tiles. Tiles are as large as their waves need: 16 samples for the longest where that is no
-/// more than half the largest edge, else 8.
+/// An octave of a chain's tiles. Tiles are as large as needed: 16 samples for the longest wave if that is at most half
+/// the largest edge, otherwise 8.
 noise::Spec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
   const std::size_t tile = GustNoise::torus_of(octave);
   const double cycles = std::ldexp(kFirstCycles[tile], static_cast<int>(octave - kFirstOctave[tile]));
@@ -115,7 +115,7 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
       const std::size_t torus = kPeriods.size() * chain + i;
       tori_[torus] = {kPeriods[i] * period_m, std::cos(kTurns_rad[torus]), std::sin(kTurns_rad[torus])};
     }
-    // Each begins where the one before it ends: twice as many waves to the metre. The chains' overlap, and share.
+    // Each begins at the end of the one before: at twice the wavenumber. The chains overlap, and share the power.
     double from_rad_m = kTurn / way_periods_m_[chain];
     const auto next = [&from_rad_m] {
       const Octave octave{from_rad_m, 2.0 * from_rad_m, 0.5};
@@ -211,7 +211,7 @@ noise::TorusPhase GustNoise::place_on(std::size_t torus, double east_m, double s
   return {noise::torus_phase(x_m, tori_[torus].period_m), noise::torus_phase(z_m, tori_[torus].period_m)};
 }
 
-/// Octave by octave: a field that has moved by X is read at x - X; its eddies as far turned as they are.
+/// Octave by octave: a field that has moved by X is read at x - X, with its eddies turned by their angle.
 GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m, Vector ahead) const noexcept {
   Values values{};
   for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {

@@ -22,34 +22,34 @@ struct GustNoiseSettings {
   double period_m = 256.0;    ///< of the first chain's middle tile
   std::size_t samples = 512;  ///< an edge of the largest tiles: a power of two, 128 to 2048
   std::uint64_t seed = 1;
-  /// Eddies turn over while they travel, so that a gust does not come back unchanged when its tile has wrapped. Twice
+  /// Eddies turn over while they travel, so that a gust does not return unchanged when its tile repeats. Needs twice
   /// the memory, and twice as many samples to read.
   bool evolves = false;
 };
 
-/// Gusts as a pattern that the wind carries over the ground, taken apart into octaves of the wavenumber, so that each
-/// can be given its own strength at each moment (engine/wind/README.md W14). Every octave has mean 0 and variance 1 as
-/// it is read, in every direction.
+/// Gusts as a pattern that the wind carries over the ground, split into octaves of the wavenumber, so that each can be
+/// given its own strength at each moment (engine/wind/README.md W14). Every octave has mean 0 and variance 1 as it is
+/// read, in every direction.
 ///
-/// The octaves of the tiles are vectors, what a plane through isotropic, incompressible turbulence has
-/// (noise::VectorNoise2): gusts are as narrow across the wind as W13 lets them be, from wherever it blows. The scalar
-/// part and the curl are mixed as in the inertial range: what is longer than the integral scale should have less curl,
-/// which no spectrum along or across the wind shows by more than 0.5 dB.
+/// The octaves of the tiles are vectors, as on a plane through isotropic, incompressible turbulence
+/// (noise::VectorNoise2): gusts have the width of W13 across the wind, in every direction. The scalar part and the curl
+/// are mixed as in the inertial range: longer waves than the integral scale should have less curl, which changes no
+/// spectrum along or across the wind by more than 0.5 dB.
 ///
 /// Two chains of octaves are added, the second's waves longer than the first's by the golden section, so that no repeat
-/// is seen. A chain's waves of 2048 m down to 0.25 m are 2-D noises on three tori, each turned by an angle of its own:
-/// four octaves on a long tile (2048 m), six on a middle one (256 m, with waves of 128 m and less: those that are as
-/// long as their tile are too few for an even spectrum), three on a short one (32 m). What is longer is the same
-/// everywhere in the scene: a 1-D noise along the way that the wind has come (65 km and 106 km before it repeats). An
-/// octave's shortest wave has four samples or more.
+/// is visible. A chain's waves of 2048 m down to 0.25 m are 2-D noises on three tori, each turned by a different angle:
+/// four octaves on a long tile (2048 m), six on a middle one (256 m, with waves of 128 m and less: a tile has too few
+/// waves of its own length for an even spectrum), three on a short one (32 m). Longer waves are the same everywhere in
+/// the scene: a 1-D noise along the wind's path (65 km and 106 km before it repeats). An octave's shortest wave has
+/// four samples or more.
 ///
-/// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (VectorNoise2), and
-/// its angle a advances by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
+/// If it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (VectorNoise2), and its
+/// angle a advances by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
 /// 1941), turnover being the cube root of the dissipation, eddy_turnover_m23_s().
 ///
 /// Gusts come in fronts: with a moment's `fronts` f above 0, an octave of the middle and short tiles is stronger where
-/// the longer ones of them rise as the wind carries them, weaker where they fall, by (1 + f d) / sqrt(1 + f^2) (W42).
-/// d has variance 1: it is -d(along)/d(ahead) of those octaves at the moment's strengths, over its deviation.
+/// the longer ones of them rise as the wind carries them, weaker where they fall, by (1 + f d) / sqrt(1 + f^2) (W42). d
+/// has variance 1: it is -d(along)/d(ahead) of those octaves at the moment's strengths, over its deviation.
 ///
 /// Gusts come in bursts: with a moment's gustiness above 0, all octaves of the tiles are stronger together in some
 /// places and weaker in others, by envelope() (W16). It travels with them.
@@ -71,7 +71,7 @@ class GustNoise {
   /// Throws the errors of make_noise_2d, and std::bad_alloc.
   explicit GustNoise(const GustNoiseSettings& settings);
 
-  /// An octave: its waves, and which part of the power at its wavenumbers is its own (the two chains share).
+  /// An octave: its waves, and its own part of the power at its wavenumbers (the two chains share it).
   struct Octave {
     double from_rad_m = 0.0;
     double to_rad_m = 0.0;
@@ -110,7 +110,7 @@ class GustNoise {
     noise::TorusTravel way_first, way_second;
     EddyPhases eddies;
   };
-  /// A place to begin at; far from that of another seed.
+  /// A start position, far from that of another seed.
   Carried begin(std::uint64_t seed) const noexcept;
 
   /// The wind (east and south, m/s) carries the pattern on for dt_s; meanwhile its eddies turn over, if it evolves, at
@@ -125,28 +125,28 @@ class GustNoise {
   };
   Values at(const Carried& carried, double east_m, double south_m, Vector ahead = {0.0, 1.0}) const noexcept;
 
-  /// The pattern at a moment: how far it has been carried, which way its `along` points, and how strong each octave is
-  /// (its standard deviation).
+  /// The pattern at a moment: its displacement, the direction of its `along`, and the strength of each octave (its
+  /// standard deviation).
   struct Moment {
     Carried carried;
     Vector ahead{0.0, 1.0};  ///< unit vector downwind; `across` is to the left of it
     std::array<float, kOctaves> along_m_s{}, across_m_s{};
-    float gustiness = 0.0F;  ///< how unequal the gusts of places are: of envelope(); 0: all alike
-    float fronts = 0.0F;     ///< how much stronger gusts are where longer ones rise than where they fall; 0: as strong
+    float gustiness = 0.0F;  ///< variation of the gusts' strength from place to place, by envelope(); 0: uniform
+    float fronts = 0.0F;     ///< increase of gusts where longer ones rise, and decrease where they fall; 0: none
   };
-  /// The gusts that all places have alike: the octaves of the way.
+  /// The gusts that are the same at all places: the octaves of the way.
   Vector everywhere(const Moment& moment) const noexcept;
   /// The gusts of a place alone: the octaves of the tiles (metres east and south of the middle of the scene).
   Vector local(const Moment& moment, double east_m, double south_m) const noexcept;
 
-  /// By how much the gusts of a place are stronger than usual: exp(g G - g^2), g being the moment's gustiness and G a
+  /// The strength of the gusts at a place relative to the usual: exp(g G - g^2), g being the moment's gustiness and G a
   /// noise of variance 1 with waves of 100 to 400 m (at periods of 256 m). Its mean square is 1. Exactly 1 where g is
   /// 0. Gusts whose strength varies in this way have the sharp increments of real ones (Castaing, Gagne and Hopfinger
   /// 1990, Velocity probability density functions of high Reynolds number turbulence: a lognormal strength).
   float envelope(const Moment& moment, double east_m, double south_m) const noexcept;
 
-  /// The gusts of a place as layers, to be read at many places at once and added up in their order, without the
-  /// envelope: operators::VectorLayer has the meaning of most. A place is read at place_on(torus_of(layer.octave), ...)
+  /// The gusts of a place as layers, for reading at many places at once and adding up in their order, without the
+  /// envelope: see operators::VectorLayer for most members. A place is read at place_on(torus_of(layer.octave), ...)
   /// - offset.
   struct Layer {
     const noise::VectorTile2* tile = nullptr;
@@ -154,7 +154,7 @@ class GustNoise {
     float cosine = 1.0F, sine = 0.0F;
     std::size_t octave = 0;  ///< of the tiles, counted from the first chain's longest
     noise::TorusPhase offset;
-    float ahead_x = 0.0F, ahead_z = 0.0F;  ///< which way the wind blows, on the tile's axes
+    float ahead_x = 0.0F, ahead_z = 0.0F;  ///< direction of the wind, on the tile's axes
     float along_m_s = 0.0F, across_m_s = 0.0F;
     float strength = 1.0F, strength_per_fall_s = 0.0F, samples_per_m = 0.0F;
   };
@@ -170,7 +170,7 @@ class GustNoise {
   /// A tile's torus on the ground.
   struct Torus {
     double period_m = 0.0;
-    double cosine = 1.0, sine = 0.0;  ///< of the angle by which it is turned
+    double cosine = 1.0, sine = 0.0;  ///< of the angle of its turn
     /// East and south, m, along its axes.
     std::array<double, 2> turned(double east_m, double south_m) const noexcept {
       return {cosine * east_m + sine * south_m, cosine * south_m - sine * east_m};
@@ -190,7 +190,7 @@ class GustNoise {
   std::array<Torus, kTori> tori_;
   std::array<Octave, kOctaves> octaves_{};
   std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};     ///< |k|^(2/3) in the middle of each octave of the tiles
-  std::array<float, 2 * kTileOctaves> slope_variances_m_2_{};  ///< of how a component of an octave changes along itself
+  std::array<float, 2 * kTileOctaves> slope_variances_m_2_{};  ///< of the change of an octave's component along itself
   bool evolves_;
   Ways ways_along_, ways_across_;  ///< of both chains
   Tiles tiles_;

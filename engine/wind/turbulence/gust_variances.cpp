@@ -14,7 +14,7 @@ double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept
 }
 
 GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept {
-  // On the ground, in two dimensions: what is left above |k| of the variance of one component.
+  // On the ground, in two dimensions: the part above |k| of the variance of one component.
   const auto above = [length_m](double rad_m) {
     const double reduced = noise::kVonKarmanCorner * length_m * rad_m;
     const double scalar = 1.0 / math::cube_root(1.0 + reduced * reduced);
@@ -30,7 +30,7 @@ GustVariances gust_variances(const GustNoise& noise, double intensity, double le
   for (std::size_t which = 0; which < 2; ++which) {
     const std::size_t way = which * GustNoise::kWayOctaves;
     const std::size_t tile = GustNoise::kFirstTileOctave + which * GustNoise::kTileOctaves;
-    // What is too long for the tiles is the way's. Its first octave stands for all that is longer, too.
+    // Waves too long for the tiles belong to the way. Its first octave also represents all longer waves.
     const double longest_rad_m = octaves[tile].from_rad_m;
     const double scale = (1.0 - above(longest_rad_m)) / along_way(0.0, longest_rad_m);
     for (std::size_t i = 0; i < GustNoise::kWayOctaves; ++i) {

@@ -9,7 +9,7 @@ namespace yuragi::wind::turbulence {
 /// A variance for each octave of the noise, over the square of the mean speed.
 using GustVariances = std::array<double, GustNoise::kOctaves>;
 
-/// Standard deviation across the wind over that along it, where it is not measured (engine/wind/README.md W9).
+/// Standard deviation across the wind relative to that along it, if it is not measured (engine/wind/README.md W9).
 inline constexpr double kAcrossPerAlong = 0.8;
 
 /// The frequency in the middle of an octave that passes at this speed.

@@ -7,16 +7,16 @@
 
 namespace yuragi::wind::turbulence {
 
-/// The mean squares of differences between neighbouring means of 1, 2, 4 ... readings, over past readings, which fade:
-/// Haar's variances (engine/wind/README.md W28). Thread-safe: no. Realtime-safe: yes.
+/// The mean squares of differences between neighbouring means of 1, 2, 4 ... readings, over past readings with a fading
+/// memory: Haar's variances (engine/wind/README.md W28). Thread-safe: no. Realtime-safe: yes.
 class HaarSquares {
  public:
   static constexpr std::size_t kScales = 10;
 
   explicit HaarSquares(double memory_s) noexcept : memory_s_(memory_s) {}
 
-  /// A difference between two neighbouring means of 2^scale readings each; `weight` (0 or more): how much it counts in
-  /// the scale's mean square. A scale from kScales on, and what is not finite, is ignored.
+  /// Adds a difference between two neighbouring means of 2^scale readings each; `weight` (0 or more): its weight in the
+  /// scale's mean square. Scales from kScales on, and values that are not finite, are ignored.
   void add(std::size_t scale, double difference, double weight) noexcept {
     if (scale >= kScales || !std::isfinite(difference) || !std::isfinite(weight)) return;
     squares_[scale] += weight * (difference * difference);
@@ -24,7 +24,7 @@ class HaarSquares {
     counts_[scale] += 1.0;
   }
 
-  /// What has been added fades: so much time has gone by.
+  /// Fades the memory by dt_s.
   void forget(double dt_s) noexcept {
     const double kept = std::exp(-std::max(dt_s, 0.0) / memory_s_);
     for (auto* sums : {&squares_, &weights_, &counts_}) {
@@ -32,10 +32,10 @@ class HaarSquares {
     }
   }
 
-  /// How many differences of a scale (below kScales) are remembered, counted as independent ones: neighbouring
-  /// differences overlap, so that 2^scale of them count about as one.
+  /// The number of remembered differences of a scale (below kScales), counted as independent ones: neighbouring
+  /// differences overlap, so that 2^scale of them count as about one.
   double observations(std::size_t scale) const noexcept { return std::ldexp(counts_[scale], -static_cast<int>(scale)); }
-  /// Their mean square; 0 where there are none, or all are 0.
+  /// Their mean square; 0 if there are none, or all are 0.
   double mean(std::size_t scale) const noexcept {
     return weights_[scale] > 0.0 ? squares_[scale] / weights_[scale] : 0.0;
   }

@@ -12,23 +12,23 @@ namespace yuragi::wind::turbulence {
 
 /// Splits a signal of vectors into octave bands as it arrives (engine/wind/README.md W17): a bank of one-pole low
 /// passes an octave apart, all fed with the last reading; a band is the difference between two neighbours, and the slow
-/// mean what the lowest passes. All bands and the mean add up to what the highest passes.
+/// mean the output of the lowest. All bands and the mean add up to the output of the highest.
 ///
 /// The steps are exact for a reading that is held. Thread-safe: no. Realtime-safe: yes.
 class OctaveFollower {
  public:
   static constexpr std::size_t kBands = 13;
-  /// Where the mean ends and band 0 begins, Hz: a memory of 100 s. The last band ends at 13 Hz.
+  /// The frequency at which the mean ends and band 0 begins, Hz: a memory of 100 s. The last band ends at 13 Hz.
   static constexpr double kLowest_hz = 1.0 / (2.0 * std::numbers::pi * 100.0);
 
-  /// Where band `band` begins, and the band before it ends.
+  /// The frequency at which band `band` begins, and the band before it ends.
   static double edge_hz(std::size_t band) noexcept { return kLowest_hz * static_cast<double>(1U << band); }
   static double centre_hz(std::size_t band) noexcept { return std::numbers::sqrt2 * edge_hz(band); }
 
   /// Begins with this value, settled.
   void begin(Vector value) noexcept { passed_.fill(value); }
 
-  /// How far each low pass goes toward its input within a step: the same for all followers.
+  /// The part by which each low pass approaches its input within a step: the same for all followers.
   using Parts = std::array<double, kBands + 1>;
   static Parts parts(double dt_s) noexcept {
     Parts parts{};
@@ -51,7 +51,7 @@ class OctaveFollower {
     return ratios;
   }();
 
-  /// What the mean (0) and each band (1 + band) pass of a wave of one frequency: magnitude and phase.
+  /// The response of the mean (0) and each band (1 + band) to a wave of one frequency: magnitude and phase.
   struct Response {
     std::array<double, kBands + 1> real, imaginary;
     explicit Response(double frequency_hz) noexcept {
@@ -83,7 +83,7 @@ class OctaveFollower {
   };
 
  private:
-  std::array<Vector, kBands + 1> passed_{};  ///< what each low pass lets through
+  std::array<Vector, kBands + 1> passed_{};  ///< output of each low pass
 };
 
 }  // namespace yuragi::wind::turbulence

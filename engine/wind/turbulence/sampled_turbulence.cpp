@@ -14,7 +14,7 @@
 namespace yuragi::wind::turbulence {
 namespace {
 
-/// Means of more samples than this are as good as means over all of the time.
+/// Above this number of samples means equal those over continuous time.
 constexpr std::size_t kSampledScales = 6;
 constexpr double kGammaOfThird = 2.6789385347077476;
 
@@ -36,7 +36,8 @@ double sampled_haar(std::size_t scale, double ratio, WindComponent component) {
   for (std::size_t lag = 0; lag < at.size(); ++lag) {
     at[lag] = autocorrelation(ratio * static_cast<double>(lag), component);
   }
-  // Of each mean with itself, less that of one with the other: pairs of samples that are so far apart, either way.
+  // The sum for each mean with itself, minus that for one with the other: pairs of samples at each distance, in either
+  // direction.
   double sum = static_cast<double>(count) * (at[0] - at[count]);
   for (std::size_t lag = 1; lag < count; ++lag) {
     sum += static_cast<double>(count - lag) * (2.0 * at[lag] - at[count - lag] - at[count + lag]);
@@ -74,7 +75,8 @@ double von_karman_unfolded_part(double frequency_hz, double interval_s, double t
   const double rate = time_scale_s / interval_s;  // everything in units of 1 / time scale
   const double own_x = std::abs(frequency_hz) * time_scale_s;
   const double own = von_karman_density(own_x);
-  // Waves that look alike are whole rates apart: the first of them one by one, the others by their integral.
+  // Waves that alias to the same frequency are whole rates apart: the first of them are added one by one, the others by
+  // their integral.
   constexpr int kTerms = 6;
   const double nearest_x = std::abs(own_x - rate * std::round(own_x / rate));
   double all = von_karman_density(nearest_x);

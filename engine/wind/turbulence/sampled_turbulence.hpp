@@ -6,9 +6,8 @@
 
 namespace yuragi::wind::turbulence {
 
-// What instantaneous samples show of turbulence with von Karman's spectrum (engine/wind/README.md W39, W40). A sample
-// every `interval` has the whole variance: the waves that are too quick for it are folded onto slower ones.
-// Thread-safe.
+// Instantaneous samples of turbulence with von Karman's spectrum (engine/wind/README.md W39, W40). A sample every
+// `interval` has the whole variance: faster waves are aliased to slower ones. Thread-safe.
 
 /// The mean square of the difference between neighbouring means of 2^scale samples, over the variance, by the
 /// autocorrelation of the turbulence along the wind or across it. `interval_over_time_scale`: from sample to sample,
@@ -19,8 +18,8 @@ double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_
 /// Makes the tables now, in some milliseconds, and not at its first use.
 void make_sampled_haar_table();
 
-/// The part of the power of samples at a frequency that is the turbulence's own there, S / (S + F): 0 to 1, all that is
-/// folded onto it being F. Realtime-safe.
+/// The turbulence's own share of the power of samples at a frequency, S / (S + F): 0 to 1, F being all power that is
+/// aliased to it. Realtime-safe.
 double von_karman_unfolded_part(double frequency_hz, double interval_s, double time_scale_s) noexcept;
 
 }  // namespace yuragi::wind::turbulence

@@ -10,11 +10,11 @@ namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kMemory_s = 3.0 * 86400.0;
-/// The prior weighs like so much learning ...
+/// The prior has the weight of this much learning ...
 constexpr double kExpectedFor_s = 6.0 * 3600.0;
-/// ... and without one, 0 dB counts like so much: the first minutes are taken over gradually.
+/// ... and without one, 0 dB has this weight, so that the first minutes are adopted gradually.
 constexpr double kNothingFor_s = 600.0;
-/// A single half hour of a gusty day may differ by as much.
+/// A single half hour of a gusty day can differ by this much.
 constexpr double kMaxLearnt_db = 20.0;
 /// The fastest waves that readings resolve (Fit): frequency times interval.
 constexpr double kResolvedUpTo = 0.37;
@@ -70,7 +70,7 @@ bool SiteSpectrum::restore(std::span<const double> known_s, std::span<const doub
 double SiteSpectrum::power(double frequency_hz, double interval_s) const noexcept {
   const double resolved_hz = kResolvedUpTo / interval_s;
   if (interval_s <= kQuick_s || frequency_hz <= resolved_hz) return 1.0;
-  // Between the middles of octaves by the logarithm; nothing an octave below the first, and on beyond the last.
+  // Between the middles of octaves by the logarithm; 0 from an octave below the first, constant beyond the last.
   const Decibels octaves = octaves_db();
   const auto level_db = [&octaves](double at_hz) {
     const double place = std::clamp(std::log2(at_hz / centre_hz(0)), -1.0, static_cast<double>(kOctaves - 1));

@@ -6,12 +6,12 @@
 
 namespace yuragi::wind::turbulence {
 
-/// How much more power gusts have at a site than slow readings let expect, octave by octave of frequency.
+/// The power of gusts at a site relative to the expectation from slow readings, octave by octave of frequency.
 ///
-/// A sensor with a reading every 14 s does not resolve faster gusts: they are made by von Karman's spectrum, fitted to
-/// its readings, and that spectrum is not every site's (trees, houses and slopes stir the air at scales of their own).
-/// The error of the fit is much alike from day to day, at the same frequency rather than at the same wavelength; so it
-/// is learnt while a fast source is live, as a mean of decibels, and forgotten over days (engine/wind/README.md W30).
+/// A sensor with a reading every 14 s does not resolve faster gusts: they are made from von Karman's spectrum, fitted
+/// to its readings, which does not fit every site (trees, houses and slopes stir the air at their own scales). The
+/// error of the fit is similar from day to day, at the same frequency rather than at the same wavelength; so it is
+/// learnt while a fast source is live, as a mean of decibels, and forgotten over days (engine/wind/README.md W30).
 /// Thread-safe: no. Realtime-safe: yes.
 class SiteSpectrum {
  public:
@@ -26,25 +26,25 @@ class SiteSpectrum {
   using Decibels = std::array<double, kOctaves>;
   using Seconds = std::array<double, kOctaves>;
 
-  /// The prior, in the octaves from the first on; it weighs as much as a quarter of a day of learning. More octaves
-  /// than there are, and what is not finite, are left out.
+  /// The prior, in the octaves from the first on; it has the weight of a quarter of a day of learning. Excess octaves,
+  /// and values that are not finite, are ignored.
   void expect(std::span<const double> octaves_db) noexcept;
 
   /// So it was in an octave for dt_s.
   void learn(std::size_t octave, double excess_db, double dt_s) noexcept;
 
-  /// The correction, within kMost_db: grows from 0 in the first minutes of learning. An octave above all of which
-  /// anything is known is as the one below.
+  /// The correction, within kMost_db: grows from 0 in the first minutes of learning. Octaves above all known ones have
+  /// the value of the one below.
   Decibels octaves_db() const noexcept;
   /// How long each has been learnt, at most the memory of three days.
   const Seconds& known_s() const noexcept { return known_s_; }
-  /// The mean of what was learnt, 0 where nothing was.
+  /// The mean of the learnt values, 0 if there are none.
   const Decibels& learnt_db() const noexcept { return learnt_db_; }
-  /// Both, from a file; false, and nothing is changed, where they cannot be that.
+  /// Restores both from a file. Returns false, and changes nothing, if they are invalid.
   bool restore(std::span<const double> known_s, std::span<const double> learnt_db) noexcept;
 
-  /// By how much the power at a frequency differs from a fit to the readings of a source of this interval (above
-  /// 0): 1 up to the frequency that the source resolves, 0.37 over the interval, and for a source of kQuick_s or less.
+  /// The power at a frequency relative to a fit to the readings of a source of this interval (above 0): 1 up to the
+  /// frequency that the source resolves, 0.37 over the interval, and for a source of kQuick_s or less.
   double power(double frequency_hz, double interval_s) const noexcept;
 
  private:

@@ -17,9 +17,9 @@ constexpr double kReadingsOfLongestScale = 32.0;
 constexpr double kMinTimeScale_s = 0.5;
 constexpr double kMaxTimeScale_s = 300.0;
 constexpr int kTimeScaleSteps = 48;
-/// A scale counts as at most so many observations, so that the finest, which have the most, do not alone decide.
+/// A scale counts as at most this many observations, so that the finest, which have the most, do not decide alone.
 constexpr double kMaxObservations = 50.0;
-/// A correction has full weight after far more independent observations than these.
+/// A correction has full weight after a multiple of this number of independent observations.
 constexpr double kObservationsToBelieve = 4.0;
 /// Haar's response to a frequency f is strongest at 0.37 / tau.
 constexpr double kStrongestAt = 0.37;

@@ -15,23 +15,23 @@ struct Turbulence {
   double time_scale_s = 8.0;  ///< integral length scale of u over the mean speed, L / U, also of a component across
 };
 
-/// The prior of a fit, which it keeps to where there are few readings.
+/// The prior of a fit, which is used if there are few readings.
 struct Prior {
   double intensity = 0.2;       ///< standard deviation over the mean speed
   double length_m = 57.0;       ///< integral length scale; 57 m is the IEC's at a height of 10 m (iec_length_scale_m)
-  double length_weight = 10.0;  ///< the length counts as so many independent observations
+  double length_weight = 10.0;  ///< the length counts as this many independent observations
   double intensity_weight = 10.0;  ///< and the intensity
 };
 
 /// Fits turbulence to the readings of one component, along the wind or across it, as they arrive: a rolling fit over
 /// past readings alone (engine/wind/README.md W28, W29).
 ///
-/// It looks at Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ...
-/// readings. Each is what a reading's averaging, or sampling, leaves of von Karman's spectrum, in closed form but for
-/// one integral that is tabled; intensity and time scale are fitted to all of them by least squares of logarithms. What
-/// remains between the spectrum and each of the scales is kept as a correction, so that the noise above the last scale
-/// goes on from what is measured there. Speeds are divided by the mean speed of their moment, so that a fit outlives a
-/// change of the wind. Source: Allan 1966, Statistics of atomic frequency standards (the variances); von Karman 1948.
+/// It uses Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ... readings.
+/// Each is the part of von Karman's spectrum after a reading's averaging, or sampling, in closed form except for one
+/// tabled integral; intensity and time scale are fitted to all of them by least squares of logarithms. The remaining
+/// difference from the spectrum at each scale is kept as a correction, so that the noise above the last scale continues
+/// from the measured power there. Speeds are divided by the mean speed of their moment, so that a fit outlives a change
+/// of the wind. Source: Allan 1966, Statistics of atomic frequency standards (the variances); von Karman 1948.
 ///
 /// Thread-safe: no. Realtime-safe after construction: yes.
 class Fit {
@@ -46,11 +46,11 @@ class Fit {
     squares_.add(scale, difference, weight);
   }
 
-  /// What has been added fades: so much time has gone by.
+  /// Fades the memory by dt_s.
   void forget(double dt_s) noexcept { squares_.forget(dt_s); }
 
-  /// Sets what the readings are taken as from the next fit on: kMean or kInstant. Precondition: it was constructed with
-  /// that or with kUnknown.
+  /// Sets the value as which the readings are used from the next fit on: kMean or kInstant. Precondition: it was
+  /// constructed with that or with kUnknown.
   void take_as(ReadingValue value) noexcept { value_ = value; }
 
   /// Fits anew, for readings every `interval_s` (above 0), means over that or instantaneous, in a wind of mean
@@ -65,7 +65,7 @@ class Fit {
   /// The mean square of differences between neighbouring means over tau_s (above 0), by the fit.
   double expected(double tau_s) const noexcept;
 
-  /// By how much the measured power differs from von Karman's at a frequency: 1 where nothing is known.
+  /// The measured power relative to von Karman's at a frequency: 1 if nothing is known.
   double correction(double frequency_hz) const noexcept;
 
  private:

@@ -12,19 +12,19 @@ namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kMemory_s = 7200.0;
-/// It judges after so much time.
+/// It judges after this time.
 constexpr double kMinKnown_s = 1800.0;
 constexpr double kJudgeEvery_s = 60.0;
 constexpr double kLikelihoodRatio = 20.0;
 /// Readings are closer than this part of a gust's length.
 constexpr double kMaxIntervalOfLength = 1.0 / 3.0;
 constexpr double kOtherInterval = 1.2;
-/// The prior of the length: deviation of its logarithm; the lengths that are tried are so many to a factor of 2.
+/// The prior of the length: deviation of its logarithm; and the number of lengths tried per factor of 2.
 constexpr double kLengthDeviation = 0.8;
 constexpr int kLengthsToOctave = 3;
 constexpr int kOctavesEitherWay = 4;
-/// A mean square has as many degrees of freedom as this part of its observations: gusts come in bursts (changes of real
-/// wind have a kurtosis of 5 to 10, by which a mean square scatters two to four times as much as of normal ones).
+/// Degrees of freedom of a mean square, relative to its observations: gusts come in bursts (changes of real wind have a
+/// kurtosis of 5 to 10, by which a mean square scatters two to four times as much as of normal ones).
 constexpr double kFreedom = 0.2;
 
 /// The logarithm of a sum of exponentials, term by term.
@@ -71,7 +71,7 @@ void ValueVerdict::judge(double interval_s, double speed_m_s) noexcept {
 }
 
 /// A mean square v of nu degrees of freedom about its expectation m has the likelihood m^(-nu/2) exp(-nu v / (2 m)).
-/// The level of the turbulence, in which both hypotheses are alike, is the most likely one for each length.
+/// The level of the turbulence, which both hypotheses share, is the most likely one for each length.
 double ValueVerdict::log_likelihood_ratio(double interval_s, double speed_m_s) const noexcept {
   LogSum instant, mean;
   for (int step = -kOctavesEitherWay * kLengthsToOctave; step <= kOctavesEitherWay * kLengthsToOctave; ++step) {
@@ -94,7 +94,7 @@ double ValueVerdict::log_likelihood_ratio(double interval_s, double speed_m_s) c
       for (std::size_t scale = 0; scale < kScales; ++scale) {
         if (shape[scale] > 0.0) sum -= 0.5 * freedom[scale] * std::log(level * shape[scale]);
       }
-      return sum;  // less all / 2, which both have
+      return sum;  // without all / 2, which both have
     };
     instant.add(log_prior + log_likelihood([&](std::size_t scale) {
                   return von_karman_sampled_haar_variance(scale, interval_over_time_scale);

@@ -9,10 +9,10 @@ namespace yuragi::wind::turbulence {
 
 /// Judges from the readings of a station whether each is a mean over the interval or the instantaneous wind (W43).
 ///
-/// Means leave less of the differences between neighbouring readings than of those between longer means; instantaneous
-/// wind does not. Compared are the likelihoods of Haar's variances over 1 to 32 readings by W28 and by W39, over all
-/// lengths by their prior. It judges after 30 min, and only while the readings are close enough to show gusts of the
-/// inertial range, which have one shape everywhere; at longer intervals averaging cannot be distinguished from a longer
+/// Means reduce the differences between neighbouring readings more than those between longer means; instantaneous wind
+/// does not. It compares the likelihoods of Haar's variances over 1 to 32 readings by W28 and by W39, over all lengths
+/// by their prior. It judges after 30 min, and only while the readings are close enough to show gusts of the inertial
+/// range, which have the same shape everywhere; at longer intervals averaging cannot be distinguished from a longer
 /// gust.
 ///
 /// Thread-safe: no. Realtime-safe after construction: yes; at most once a minute judge() takes about 20 us.
@@ -25,18 +25,18 @@ class ValueVerdict {
 
   /// HaarSquares::add() of a difference over the mean speed. Scales from kScales on are not judged.
   void add(std::size_t scale, double difference, double weight) noexcept { squares_.add(scale, difference, weight); }
-  /// So much time has gone by.
+  /// Fades the memory by dt_s.
   void forget(double dt_s) noexcept;
 
-  /// Judges readings every `interval_s` in a wind of mean speed `speed_m_s`, both above 0. An interval that changes
-  /// by more than a fifth begins anew.
+  /// Judges readings every `interval_s` in a wind of mean speed `speed_m_s`, both above 0. If the interval changes by
+  /// more than a fifth, judging starts again.
   void judge(double interval_s, double speed_m_s) noexcept;
 
-  /// kMean or kInstant, or kUnknown as long as neither is 20 times as likely as the other. Once judged it stays until
-  /// the other one is.
+  /// kMean or kInstant; kUnknown while neither is 20 times as likely as the other. A verdict is kept until the other
+  /// one is reached.
   ReadingValue verdict() const noexcept { return verdict_; }
 
-  /// The logarithm of how many times as likely the readings are if they are instantaneous as if they are means.
+  /// The logarithm of the likelihood of the readings as instantaneous values over that as means.
   double log_likelihood_ratio(double interval_s, double speed_m_s) const noexcept;
 
  private:

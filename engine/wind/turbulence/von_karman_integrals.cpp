@@ -49,8 +49,8 @@ double von_karman_haar_variance(double tau_over_time_scale, WindComponent compon
 }
 
 double von_karman_mean_variance(double tau_over_time_scale) noexcept {
-  // A Haar variance at tau is four times what a mean over 2 tau has less than one over tau. From here on a mean's
-  // variance is 2 T / tau: the spectrum's value at 0 over 2 tau.
+  // A Haar variance at tau is four times the difference of the variances of means over tau and over 2 tau. From here on
+  // a mean's variance is 2 T / tau: the spectrum's value at 0 over 2 tau.
   constexpr double kFar = 250.0;
   if (!(tau_over_time_scale > 0.0)) return 1.0;
   const int octaves = std::max(0, static_cast<int>(std::ceil(std::log2(kFar / tau_over_time_scale))));

@@ -16,8 +16,8 @@ double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexc
 double von_karman_haar_variance(double tau_over_time_scale, WindComponent component = WindComponent::kAlong) noexcept;
 
 /// The variance of means over tau, over the variance of a von Karman spectrum, for tau / time scale (above 0): 1 for
-/// short ones, 0 for long ones. What is left of 1 is the variance within a block of length tau about its own mean.
-/// Within 1 % of 1.
+/// short ones, 0 for long ones. The rest to 1 is the variance within a block of length tau about its own mean. Within 1
+/// % of 1.
 double von_karman_mean_variance(double tau_over_time_scale) noexcept;
 /// Makes the tables of von_karman_haar_variance() now, in some milliseconds, and not at its first use.
 void make_haar_table();

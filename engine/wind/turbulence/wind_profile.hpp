@@ -6,7 +6,7 @@
 
 namespace yuragi::wind::turbulence {
 
-// How the mean wind and its turbulence change with height and from place to place. All functions here are pure.
+// The change of the mean wind and its turbulence with height and from place to place. All functions here are pure.
 // Thread-safe and realtime-safe: yes.
 
 /// Von Karman's constant.

@@ -61,7 +61,7 @@ double iec_kaimal(double x) noexcept {
 /// A model's formula for one component.
 struct Form {
   Shape shape = nullptr;  ///< nullptr: nothing
-  double integral = 0.0;  ///< of the shape over x, exact for the constants as they are printed
+  double integral = 0.0;  ///< of the shape over x, exact for the printed constants
 };
 
 /// The integral over x from 0 on of 4 / (1 + c x^2)^(5/6): with t = x sqrt(c), a beta function.
@@ -109,7 +109,7 @@ double sigma_per_friction_velocity(WindComponent component) noexcept {
   return kRatios[static_cast<std::size_t>(component)];
 }
 
-/// What stands for x in the model's formula, over f.
+/// The x of the model's formula over f.
 double time_of(const SpectrumSettings& settings) noexcept {
   const double u = settings.speed_m_s;
   const double length_m = settings.length_m.value_or(iec_length_scale_m(WindComponent::kAlong, settings.height_m));
@@ -177,7 +177,7 @@ Result<WindSpectrum, SpectrumError> WindSpectrum::make(const SpectrumSettings& s
   spectrum.time_s_ = time_of(settings);
 
   if (is_scaled_by_sigma(settings.model)) {
-    // The formula is for a variance of s^2 as it stands: its printed constants integrate to 1 within a few in 10,000.
+    // The formula itself is for a variance of s^2: its printed constants integrate to 1 within a few in 10,000.
     double sigma_m_s = iec_sigma_m_s(IecTurbulenceClass::kB, settings.component, settings.speed_m_s);
     if (settings.friction_velocity_m_s) {
       sigma_m_s = sigma_per_friction_velocity(settings.component) * *settings.friction_velocity_m_s;

@@ -39,14 +39,14 @@ enum class SpectrumModel : std::uint8_t { kSimiu, kKaimal, kDavenport, kVonKarma
 inline constexpr std::array<std::string_view, 5> kSpectrumModelNames = {"simiu", "kaimal", "davenport", "von-karman",
                                                                         "iec-kaimal"};
 
-/// What a spectrum is of. What is left out follows from the rest.
+/// The parameters of a spectrum. Missing ones follow from the others.
 struct SpectrumSettings {
   SpectrumModel model = SpectrumModel::kVonKarman;
   WindComponent component = WindComponent::kAlong;
   double speed_m_s = 8.0;  ///< mean; of Davenport's model at 10 m, of the others at `height_m`
   double height_m = 10.0;
-  /// Standard deviation of that component. Left out: what u* gives, in the models that are scaled by u*; the IEC's
-  /// normal turbulence of class B in the others (iec_sigma_m_s).
+  /// Standard deviation of that component. Nullopt: from u*, in the models that are scaled by u*; the IEC's normal
+  /// turbulence of class B in the others (iec_sigma_m_s).
   std::optional<double> sigma_m_s = std::nullopt;
   /// u*. Left out: the logarithmic profile over open country (roughness 0.03 m). Models that are scaled by s take u* to
   /// mean s = (2.39, 1.92, 1.25) u* (Panofsky and Dutton 1984, Atmospheric Turbulence, neutral air). Not with
@@ -59,14 +59,14 @@ struct SpectrumSettings {
 
 enum class SpectrumError : std::uint8_t {
   kSpeedOutOfRange,   ///< not above 0, not finite
-  kHeightOutOfRange,  ///< not above 0, not finite; where u* follows from a profile, not above its roughness
+  kHeightOutOfRange,  ///< not above 0, not finite; if u* follows from a profile, not above its roughness
   kSigmaOutOfRange,   ///< negative, not finite, or given together with u*
   kFrictionVelocityOutOfRange,
-  kLengthOutOfRange,  ///< not above 0, not finite, or of a model that has none
+  kLengthOutOfRange,  ///< not above 0, not finite, or of a model without one
   kNoSuchComponent,   ///< Davenport's model has u only
 };
 
-/// For people: what is allowed.
+/// For people: the allowed values.
 std::string_view explain(SpectrumError error) noexcept;
 
 [[noreturn]] inline void throw_exception_from_error(SpectrumError error, const boost::source_location&) {
@@ -78,7 +78,7 @@ class WindSpectrum {
  public:
   static Result<WindSpectrum, SpectrumError> make(const SpectrumSettings& settings) noexcept;
 
-  /// S(f), m^2/s^2/Hz, f from 0 on. (At 0 it is what the model tends to: 0 for Davenport's.)
+  /// S(f), m^2/s^2/Hz, f from 0 on. (At 0 it is the model's limit: 0 for Davenport's.)
   double density_m2_s2_hz(double frequency_hz) const noexcept;
 
   /// The integral over all frequencies, in closed form: the component's variance.

@@ -7,7 +7,7 @@ namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kMaxDifference = 1.0;
-/// A smaller one is rounding of the sums: a constant wind has no turbulence at all.
+/// A smaller one is rounding of the sums: a constant wind has no turbulence.
 constexpr double kMinDifference = 1e-9;
 
 /// Of the longest means, with as many readings before.
@@ -35,7 +35,7 @@ void WindTurbulence::forget(double dt_s) noexcept {
   if (verdict_) verdict_->forget(dt_s);
 }
 
-/// From now on sums are counted from the last reading.
+/// From now on sums start at the last reading.
 void WindTurbulence::begin_turn() noexcept {
   const Vector total = sums_[last_];
   for (Vector& sum : sums_) sum = sum - total;

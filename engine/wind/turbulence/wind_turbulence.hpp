@@ -11,19 +11,19 @@
 
 namespace yuragi::wind::turbulence {
 
-/// The turbulence that the readings of one source show, along the wind and across it: of the last readings the
-/// differences between the mean of 2^s and that of as many before, each a part of the mean speed.
+/// The turbulence in the readings of one source, along the wind and across it: the differences between the mean of the
+/// last 2^s readings and that of the 2^s before, relative to the mean speed.
 ///
-/// Each difference counts as much as the speed that it is a part of: in weak wind the parts are large and move little,
-/// and a fit in which all count alike makes the gusts of the stronger wind behind it too strong.
+/// Each difference is weighted by that speed: in weak wind the relative differences are large but have little effect,
+/// and with equal weights the gusts of a stronger wind after it would be too strong.
 ///
-/// A difference is at most the mean speed: a wind that rises out of a calm differs by many times the mean that
-/// it rises from, which shows how fast that mean follows and not how strong the gusts are.
+/// A difference is at most the mean speed: a wind that rises out of a calm differs by many times the previous mean,
+/// which depends on how fast that mean follows and not on the gusts.
 ///
-/// The mean of any number of last readings is the difference of two running sums. Each turn of their ring begins with
-/// sums from 0 again, so that rounding does not grow however long this runs: means are exact to 1e-11 m/s (readings of
-/// up to 60 m/s). Allocates at construction only. Thread-safe: no. Realtime-safe: yes. Cost of a reading: about 20 ns,
-/// and 2 us once a turn.
+/// The mean of any number of last readings is the difference of two running sums. Each turn of their ring starts with
+/// sums of 0 again, so that rounding does not grow over time: means are exact to 1e-11 m/s (readings of up to 60 m/s).
+/// Allocates at construction only. Thread-safe: no. Realtime-safe: yes. Cost of a reading: about 20 ns, and 2 us once a
+/// turn.
 class WindTurbulence {
  public:
   /// `prior`: along the wind; across it, the intensity is kAcrossPerAlong of it. Of kUnknown, the readings are judged.
@@ -34,13 +34,13 @@ class WindTurbulence {
     along_.take_as(value);
     across_.take_as(value);
   }
-  /// So much time has gone by.
+  /// Fades the memory by dt_s.
   void forget(double dt_s) noexcept;
-  /// After a gap: what comes next is not compared with what was.
+  /// Call after a gap: later readings are not compared with earlier ones.
   void break_off() noexcept { history_size_ = 0; }
   /// The next reading, in a wind that blows toward the unit vector `ahead` with a mean of speed_m_s (above 0).
   void take(Vector wind, Vector ahead, double speed_m_s, bool has_across) noexcept;
-  /// Fits both, for readings every interval_s, and judges what the readings are.
+  /// Fits both, for readings every interval_s, and judges the value of the readings.
   void fit(double interval_s, double speed_m_s) noexcept;
 
   const Fit& along() const noexcept { return along_; }

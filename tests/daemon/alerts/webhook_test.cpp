@@ -75,7 +75,7 @@ TEST(Webhook, SaysWhyNotAndHidesItsUrl) {
   WebhookServer server("HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n");
   const auto refused = post_to_webhook(news_for(server.url()), "wall-3", {});
   ASSERT_FALSE(refused.has_value());
-  EXPECT_EQ(refused.error().message, "127.0.0.1 answers with HTTP 404: check the webhook");
+  EXPECT_EQ(refused.error().message, "127.0.0.1 replies with HTTP 404: check the webhook");
 
   const auto nobody =
       post_to_webhook(news_for("http://127.0.0.1:" + std::to_string(free_port(SOCK_STREAM)) + "/s3cret"), "wall-3", {});

@@ -703,7 +703,7 @@ TEST(Recorder, ADiskThatHangsIsAStateAndTheReadingsWait) {
   recorder.push(0, test::reading_at(2, 1.0));
   EXPECT_EQ(recorder.status().waiting, 2U);
   EXPECT_EQ(recorder.status().written, 0U);
-  EXPECT_NE(recorder.status().error.find("a.windlog: the disk does not answer"), std::string::npos);
+  EXPECT_NE(recorder.status().error.find("a.windlog: the disk does not respond"), std::string::npos);
   DiskGate::set_open(true);
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
   recorder.close();

@@ -171,7 +171,7 @@ TEST_F(FallbackRecordingTest, ThatCannotBePlayedIsAMistakeOfTheConfiguration) {
   EXPECT_EQ(complaint("[wind]\nfallback_recording = \"" + file().string() + "\"\n"), "");
   EXPECT_EQ(complaint("[wind]\nfallback_recording = \"\"\n"), "");
   EXPECT_EQ(complaint("[wind]\nfallback_recording = \"/no/such.windlog\"\n"),
-            "wall.toml:2:22: wind.fallback_recording: /no/such.windlog: there is no such recording");
+            "wall.toml:2:22: wind.fallback_recording: /no/such.windlog: the recording does not exist");
   std::ofstream(folder_ / "damaged.windlog") << "not a recording";
   EXPECT_NE(complaint("[wind]\nfallback_recording = \"" + (folder_ / "damaged.windlog").string() + "\"\n"), "");
   test::write_session(folder_ / "empty.windlog", {});

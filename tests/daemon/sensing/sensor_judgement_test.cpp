@@ -527,7 +527,7 @@ TEST(SensorJury, WhatIsSaidAgainIsLevelledAsTheFirstTime) {
   };
   const wind::Reading untouched = reading_at(999.0, 5.5);
   jury.hear(0, untouched);
-  EXPECT_TRUE(says_the_same(jury.levelled(0, untouched), untouched)) << "nothing is known";
+  EXPECT_TRUE(has_same_values(jury.levelled(0, untouched), untouched)) << "nothing is known";
   using Learnt = wind::judging::GroupGains::Learnt;
   ASSERT_TRUE(jury.restore_gains(std::vector<Learnt>{{0.2, 3600.0}, {-0.2, 3600.0}}));
   const wind::Reading first = reading_at(1000.0, 6.0);
@@ -538,7 +538,7 @@ TEST(SensorJury, WhatIsSaidAgainIsLevelledAsTheFirstTime) {
   ASSERT_TRUE(jury.restore_gains(std::vector<Learnt>{{0.1, 3600.0}, {-0.1, 3600.0}}));
   const wind::Reading again = reading_at(1001.0, 6.0);
   jury.hear(0, again);
-  EXPECT_TRUE(says_the_same(jury.levelled(0, again), levelled));
+  EXPECT_TRUE(has_same_values(jury.levelled(0, again), levelled));
   const wind::Reading next = reading_at(1002.0, 6.1);
   jury.hear(0, next);
   EXPECT_NEAR(jury.levelled(0, next).speed_m_s, 6.1 * std::exp(-0.1), 1e-12);

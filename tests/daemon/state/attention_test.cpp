@@ -76,7 +76,7 @@ TEST(Attention, IsNeededByARecorderThatCannotWrite) {
   EXPECT_THAT(needs_attention(sensors),
               ElementsAre(AllOf(HasSubstr("cannot write"), HasSubstr("No space left on device"))));
   sensors.recorder->state = wire::RecorderState::kHanging;
-  EXPECT_THAT(needs_attention(sensors), ElementsAre(HasSubstr("does not answer")));
+  EXPECT_THAT(needs_attention(sensors), ElementsAre(HasSubstr("does not respond")));
 }
 
 TEST(Attention, IsNeededByAClockThatIsDoubted) {

@@ -18,7 +18,7 @@ class LogAllowanceTest : public testing::Test {
     return lines;
   }
 
-  LogAllowance allowance_{{.burst = 20.0, .per_s = 2.0, .told_every = 10s}, at(0s)};
+  LogAllowance allowance_{{.burst = 20.0, .per_s = 2.0, .report_every = 10s}, at(0s)};
 };
 
 TEST_F(LogAllowanceTest, SoManyAtOnceAndThenSoManyASecond) {
@@ -41,22 +41,22 @@ TEST_F(LogAllowanceTest, AFloodOfAnHourIsBounded) {
 
 TEST_F(LogAllowanceTest, WhatWasLeftOutIsToldOnce) {
   allowed(1020, 1s);
-  EXPECT_EQ(allowance_.tell_left_out(at(9s)), 0U) << "the flood may go on";
-  EXPECT_EQ(allowance_.tell_left_out(at(10s)), 1000U);
-  EXPECT_EQ(allowance_.tell_left_out(at(30s)), 0U);
+  EXPECT_EQ(allowance_.take_left_out(at(9s)), 0U) << "the flood may go on";
+  EXPECT_EQ(allowance_.take_left_out(at(10s)), 1000U);
+  EXPECT_EQ(allowance_.take_left_out(at(30s)), 0U);
 }
 
 TEST_F(LogAllowanceTest, AFloodThatGoesOnIsToldAgainAfterItsTime) {
   allowed(120, 0s);
-  EXPECT_EQ(allowance_.tell_left_out(at(10s)), 100U);
+  EXPECT_EQ(allowance_.take_left_out(at(10s)), 100U);
   EXPECT_EQ(allowed(120, 10s), 20);
-  EXPECT_EQ(allowance_.tell_left_out(at(19s)), 0U);
-  EXPECT_EQ(allowance_.tell_left_out(at(20s)), 100U);
+  EXPECT_EQ(allowance_.take_left_out(at(19s)), 0U);
+  EXPECT_EQ(allowance_.take_left_out(at(20s)), 100U);
 }
 
 TEST_F(LogAllowanceTest, NothingLeftOutIsNotTold) {
   allowed(20, 0s);
-  EXPECT_EQ(allowance_.tell_left_out(at(1h)), 0U);
+  EXPECT_EQ(allowance_.take_left_out(at(1h)), 0U);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ class OverlayPanelsTest : public testing::Test {
   }
 
   static constexpr const char* kNotice =
-      "no daemon answers at wall.local:7410: Connection refused\n"
+      "no daemon replies at wall.local:7410: Connection refused\n"
       "Start `yuragi run` on this machine, or name another daemon with --connect HOST:PORT.";
   wire::Sensors sensors_;
   WindTrace trace_;

@@ -141,7 +141,7 @@ TEST(StreamConnection, ComesBackWhenTheServerIsRestartedOnThePort) {
   Viewer viewer(options_for(port));
   ASSERT_TRUE(viewer.wait_until([&] { return !viewer.scenes.empty(); }));
   server.reset();
-  ASSERT_TRUE(viewer.wait_for_text("no daemon answers"));
+  ASSERT_TRUE(viewer.wait_for_text("no daemon replies"));
   EXPECT_EQ(viewer.connection.status().state, State::kWaiting);
 
   server = std::make_unique<StreamServer>(kHello + scenes_named("second"), port);
@@ -292,7 +292,7 @@ TEST(StreamConnection, StopsWhileItWaitsToTryAgain) {
   Options options = options_for(port);
   options.min_backoff = options.max_backoff = std::chrono::hours(1);
   Viewer viewer(options);
-  EXPECT_TRUE(viewer.wait_for_text("no daemon answers"));
+  EXPECT_TRUE(viewer.wait_for_text("no daemon replies"));
 }
 
 }  // namespace

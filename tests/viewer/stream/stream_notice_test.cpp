@@ -12,13 +12,13 @@ using testing::IsEmpty;
 
 const Status kConnecting{.state = State::kConnecting, .text = "connecting to 127.0.0.1:7410"};
 const Status kConnected{.state = State::kConnected, .text = "connected to 127.0.0.1:7410"};
-const Status kRefused{.state = State::kWaiting, .text = "no daemon answers at 127.0.0.1:7410: Connection refused"};
+const Status kRefused{.state = State::kWaiting, .text = "no daemon replies at 127.0.0.1:7410: Connection refused"};
 
 TEST(StreamNotice, AFailureIsShownAtOnceWithWhatToDo) {
   Notice notice;
   EXPECT_THAT(notice.advance(10.0, Playback::kNothing, kConnecting), IsEmpty());
   EXPECT_EQ(notice.advance(10.1, Playback::kNothing, kRefused),
-            "no daemon answers at 127.0.0.1:7410: Connection refused\n"
+            "no daemon replies at 127.0.0.1:7410: Connection refused\n"
             "Start `yuragi run` on this machine, or name another daemon with --connect HOST:PORT.");
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kNearestBranch_m = 0.3F;
 
-/// How thick a branch is in the picture, pixels across, from which on it has more sides than the fewest.
+/// Thickness of a branch in the picture, pixels, above which it has more sides than the minimum.
 constexpr std::array<float, Branches::kSides.size() - 1> kThick_px = {3.0F, 24.0F};
 
 }  // namespace
@@ -46,7 +46,7 @@ void Branches::choose(const View& view, float ring_px, const Place& place) {
   const glm::vec3 eye_m(view.eye_m);
   for (BranchGroup& group : groups_) group.count = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    // No joint is farther from the middle of foot and tip than the length.
+    // Every joint is at most this length from the midpoint of foot and tip.
     const glm::vec3 middle_m = place.moved(middles_m_[i]);
     const float length_m = place.scale * lengths_m_[i];
     const bool is_seen = std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {

@@ -14,7 +14,7 @@
 
 namespace yuragi::viewer::meshes::trees {
 
-/// Branches that are drawn as tubes with as many rings of vertices and as many sides.
+/// Branches that are drawn as tubes with the same numbers of rings and sides.
 struct BranchGroup {
   std::size_t rings = 1;  ///< at most one a link
   std::size_t tube = 0;   ///< of Branches::kSides
@@ -22,11 +22,11 @@ struct BranchGroup {
   std::size_t count = 0;
 };
 
-/// All branches of a level of wood, and which of them a picture needs, how finely: those in view, with more rings the
-/// longer and more sides the thicker they are in it. Allocates when it is made, never afterwards.
+/// All branches of a level of wood, and their selection for a picture: the visible ones, with more rings if they are
+/// long in it and more sides if they are thick. Allocates when it is made, never afterwards.
 class Branches {
  public:
-  static constexpr std::size_t kMinRings = 4;  ///< where there are as many links
+  static constexpr std::size_t kMinRings = 4;  ///< if there are as many links
   static constexpr std::array<std::size_t, 3> kSides = {3, 6, 14};
 
   /// `tree` must outlive this.
@@ -34,7 +34,8 @@ class Branches {
 
   void move_to(const pose::TreeJoints& joints);
 
-  /// Those in view of the tree, or of a copy of it, with a ring at least for each `ring_px` pixels of their length.
+  /// Selects the visible ones of the tree, or of a copy of it, with at least a ring for each `ring_px` pixels of their
+  /// length.
   void choose(const View& view, float ring_px, const Place& place = {});
   std::span<const Part> parts() const { return std::span(chosen_).first(chosen_count_); }
   std::span<const BranchGroup> groups() const { return groups_; }

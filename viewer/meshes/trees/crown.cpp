@@ -12,15 +12,15 @@ namespace {
 
 constexpr float kNearest_m = 0.3F;
 
-/// A bare twig goes on more along the one that bears it than a strand of leaves does.
+/// A bare twig follows its parent's direction more than a strand of leaves does.
 constexpr float kTwigAlong = 0.3F;
 
-/// A spray of which this share is seen through the others has all of its leaves; one that is hidden, fewer, at most so
-/// many times as large.
+/// A spray whose visible share is above this has all of its leaves; a hidden one has fewer, which are larger, up to
+/// this factor.
 constexpr float kHardlySeen = 0.35F;
 constexpr float kMaxHidden = 1.4F;
 
-/// There are meshes with these numbers of leaves; a spray is drawn with the smallest that suffices.
+/// There are meshes with these numbers of leaves; a spray is drawn with the smallest sufficient one.
 constexpr std::array<std::size_t, 9> kLeafCounts = {1, 2, 3, 4, 6, 9, 13, 18, 26};
 
 /// The number's 4 digits in base 2, mirrored: any first few numbers are spread over all 16.
@@ -51,7 +51,7 @@ glm::vec3 direction_to(const glm::vec3& from, const glm::vec3& to) {
 class LeafCells {
  public:
   static constexpr int kSide = 28;
-  /// More than there are through any tree; a hostile one may be so large, or so far off, that a step gets nowhere.
+  /// More than any tree needs; a hostile one can be so large, or so far away, that a step makes no progress.
   static constexpr int kMaxSteps = 1000;
   static constexpr std::size_t kCells = std::size_t{kSide} * kSide * kSide;
 
@@ -63,7 +63,7 @@ class LeafCells {
     if (cell >= 0) density_[static_cast<std::size_t>(cell)] += area_m2 / (cell_m_.x * cell_m_.y * cell_m_.z);
   }
 
-  /// The share of light that comes along `direction` to a place.
+  /// The share of light that reaches a place along `direction`.
   float light_from(glm::vec3 place_m, const glm::vec3& direction) const {
     const float step_m = 0.7F * std::min({cell_m_.x, cell_m_.y, cell_m_.z});
     float leaves = 0.0F;  // across the light, area over area
@@ -169,7 +169,7 @@ std::size_t Crown::strands_in(std::size_t block) const {
   return std::min(pose::kStrandsPerBlock, parts_.size() - block * pose::kStrandsPerBlock);
 }
 
-/// A twig in the place of a strand of leaves: it does not hang, and it is turned as the link that it grows from.
+/// Turns a strand of leaves into a twig: it does not hang, and has the direction of the link that it grows from.
 void Crown::straighten(SprayPlace& spray, std::size_t strand, const pose::TreeJoints& joints) const {
   const pose::TreeLevel& level = tree_->levels[level_];
   const std::size_t parent = level.parent[strand];
@@ -240,7 +240,7 @@ void Crown::choose(const View& view, const SprayDetail& detail, const Place& pla
     const float distance_m = std::max(glm::distance(eye_m, glm::vec3(middle_m)), kNearest_m);
     choice.level = spray_level(shape_, place.scale * leaf_m_ / (view.eye_m.w * distance_m), detail);
     if (choice.level.kind != SprayKind::kNear) {
-      // As much as light comes from the eye, so much is seen from there.
+      // The visible share equals the share of light that comes from the eye's direction.
       const glm::vec4& open = balls_[block].open;
       const glm::vec3 to_eye = (eye_m - glm::vec3(middle_m)) / distance_m;
       const float seen = open.w + glm::dot(place.turned(glm::vec3(open)), to_eye);
@@ -252,7 +252,7 @@ void Crown::choose(const View& view, const SprayDetail& detail, const Place& pla
       return group.kind == choice.level.kind && static_cast<float>(group.leaves) >= choice.level.leaves;
     };
     choice.group = static_cast<std::size_t>(std::find_if(groups_.begin(), groups_.end(), suffices) - groups_.begin());
-    // Of less than a leaf each, some sprays have one.
+    // If each has less than one leaf, only some sprays have one.
     const std::size_t strands = strands_in(block);
     for (std::size_t i = 0; i < strands; ++i) {
       if (choice.level.leaves * 16.0F > static_cast<float>(mirrored(i))) ++groups_[choice.group].count;

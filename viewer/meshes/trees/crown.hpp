@@ -16,19 +16,19 @@
 
 namespace yuragi::viewer::meshes::trees {
 
-/// A spray as the leaves' shader reads it: it goes from root to tip along a parabola.
+/// A spray, in the leaves' shader's layout: a parabola from root to tip.
 struct SprayPlace {
   glm::vec3 root_m{0.0F};
   float length_m = 0.0F;
   glm::vec3 tip_m{0.0F};
-  float leaves = 0.0F;    ///< that are drawn; the last one in part
+  float leaves = 0.0F;    ///< number that is drawn; the last one in part
   glm::vec3 bow_m{0.0F};  ///< at u of the way from root to tip the spray is u (1 - u) of this beside the straight line
   float blown = 0.0F;     ///< the square of how far the wind has turned it from rest (the chord of unit vectors)
   glm::vec3 upper{0.0F};  ///< the normal of its upper side
-  float size = 1.0F;      ///< of its leaves: larger where few are drawn
+  float size = 1.0F;      ///< size of its leaves: larger if few are drawn
   glm::vec3 tint{0.0F};   ///< linear light
   float number = 0.0F;    ///< of the spray
-  glm::vec4 open{0.0F};   ///< the share of light that comes to it from a direction d: w + dot(xyz, d), about
+  glm::vec4 open{0.0F};   ///< the share of light that reaches it from a direction d: about w + dot(xyz, d)
 };
 
 /// Sprays that are drawn with one mesh.
@@ -39,16 +39,15 @@ struct SprayGroup {
   std::size_t count = 0;
 };
 
-/// All sprays of a level of leaves: where they are, and which of them a picture needs, how finely.
+/// All sprays of a level of leaves, and their selection for a picture and its detail.
 ///
-/// Sprays are judged 16 by 16, as they stand together on a twig: those out of view are left out, those farther away get
-/// fewer, larger leaves, and so do those that others hide from the eye; then there are fewer sprays. Nothing comes or
-/// goes but by growing. Allocates when it is
-/// made, never afterwards.
+/// Sprays are selected in groups of 16 that grow on one twig: invisible ones are omitted; distant ones, and those
+/// hidden by others, get fewer, larger leaves, and then there are fewer sprays. Everything appears and disappears by
+/// growing. Allocates when it is made, never afterwards.
 class Crown {
  public:
-  /// `tree` must outlive this. As what it shows itself, or with another foliage: a tree with leaves that is shown bare
-  /// has stiff twigs in their place, which go with the wood that bears them.
+  /// `tree` must outlive this. With the tree's own foliage or another one: a tree with leaves that is shown bare has
+  /// stiff twigs instead, which move with the wood that bears them.
   Crown(const pose::TreeSkeleton& tree, std::size_t level);
   Crown(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage);
 
@@ -59,7 +58,7 @@ class Crown {
   /// The mean of SprayPlace::blown.
   float blown() const { return blown_; }
 
-  /// Those in view of the tree, or of a copy of it.
+  /// Selects the visible ones of the tree, or of a copy of it.
   void choose(const View& view, const SprayDetail& detail, const Place& place = {});
   std::span<const SprayPlace> places() const { return std::span(chosen_).first(chosen_count_); }
   std::span<const SprayGroup> groups() const { return groups_; }
@@ -73,7 +72,7 @@ class Crown {
   struct Ball {
     glm::vec3 middle_m{0.0F};
     float radius_m = 0.0F;
-    glm::vec4 open{0.0F};  // the mean of its sprays'
+    glm::vec4 open{0.0F};  // mean of its sprays
   };
 
   std::size_t strands_in(std::size_t block) const;
@@ -82,7 +81,7 @@ class Crown {
   const pose::TreeSkeleton* tree_;
   std::size_t level_;
   SprayShape shape_;
-  bool is_stiff_;  // its strands do not bend, other than those of the stream
+  bool is_stiff_;  // its strands do not bend, unlike those of the stream
   float leaf_m_ = 0.0F;
   std::vector<Part> parts_;
   std::vector<SprayPlace> sprays_;
@@ -94,9 +93,10 @@ class Crown {
   float blown_ = 0.0F;
 };
 
-/// How much light comes to each strand of a level of leaves through the others, from all around: see SprayPlace::open.
-/// By the leaves' area in the cells of a grid, in which light is lost as M. Monsi and T. Saeki 1953 say ("Ueber den
-/// Lichtfaktor in den Pflanzengesellschaften", Beer's law with half of the leaf area across the light), at rest.
+/// The light from all around that reaches each strand of a level of leaves through the others: see SprayPlace::open.
+/// Computed from the leaves' area in the cells of a grid, in which light is lost according to M. Monsi and T. Saeki
+/// 1953 ("Ueber den Lichtfaktor in den Pflanzengesellschaften", Beer's law with half of the leaf area across the
+/// light), at rest.
 std::vector<glm::vec4> crown_openness(const pose::TreeSkeleton& tree, std::size_t level, const SprayShape& shape);
 
 }  // namespace yuragi::viewer::meshes::trees

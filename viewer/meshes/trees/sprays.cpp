@@ -18,12 +18,12 @@ constexpr std::size_t kTwigs = 2;
 constexpr std::size_t kStalkRings = 4;
 constexpr int kPetals = 5;
 
-// Half the width of a strand as a share of its length, between the species.
+// Half the width of a strand as a share of its length; threshold between the species.
 constexpr float kNarrow = 0.225F;
 constexpr float kBroad = 0.31F;
 
 /// The number's digits in base 2, mirrored at the point: 0, 1/2, 1/4, 3/4, 1/8, ... (J. van der Corput 1935). Any first
-/// few of them are spread over the whole range.
+/// part of them is spread over the whole range.
 float spread(std::size_t number) {
   float value = 0.0F;
   for (float digit = 0.5F; number > 0; number /= 2, digit /= 2) value += digit * static_cast<float>(number % 2);
@@ -32,7 +32,7 @@ float spread(std::size_t number) {
 
 /// The foot of a leaf, at which its corners are placed.
 SprayCorner foot_of(std::size_t leaf, bool has_flowers) {
-  // The first one is at the tip; the others at alternate sides, down to a quarter of the way.
+  // The first leaf is at the tip; the others are on alternating sides, down to a quarter of the way.
   const float at = 1.0F - (has_flowers ? 0.85F : 0.75F) * spread(leaf);
   const float side = leaf == 0 ? 0.0F : (std::lround(at * 8.0F) % 2 == 0 ? 1.0F : -1.0F);
   return {.at = at, .side = side, .along = 0.0F, .across = 0.0F, .edge = 0.0F, .leaf = static_cast<float>(leaf)};
@@ -59,7 +59,7 @@ void add_kite(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot)
   const auto first = static_cast<std::uint32_t>(mesh.corners.size());
   const float length = shape.leaf_length;
   const float blade_foot = kPetiole * length;
-  // As wide as covers what the curved outline does.
+  // As wide as needed to cover the same area as the curved outline.
   const float half = 0.58F * shape.leaf_width * length;
   const float widest = blade_foot + std::clamp(shape.widest_at, 0.25F, 0.5F) * length;
   mesh.corners.insert(mesh.corners.end(),
@@ -125,7 +125,7 @@ void add_pentagon(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& f
   }
 }
 
-/// A triangle that covers as much as a kite.
+/// A triangle that covers the same area as a kite.
 void add_leaf_speck(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
   const auto first = static_cast<std::uint32_t>(mesh.corners.size());
   const float length = shape.leaf_length;
@@ -136,7 +136,7 @@ void add_leaf_speck(SprayMesh& mesh, const SprayShape& shape, const SprayCorner&
   mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
 }
 
-/// A triangle that covers as much as a pentagon, in the mean of its colors.
+/// A triangle that covers the same area as a pentagon, in the mean of its colors.
 void add_flower_speck(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
   const auto first = static_cast<std::uint32_t>(mesh.corners.size());
   const float radius = 0.63F * shape.leaf_length;
@@ -147,7 +147,7 @@ void add_flower_speck(SprayMesh& mesh, const SprayShape& shape, const SprayCorne
   mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
 }
 
-/// The spray's own axis is the first; the others leave it, and grow thin toward their tips.
+/// The spray's own axis is the first; the others branch off, and get thinner toward their tips.
 void add_twig(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
   const auto first = static_cast<std::uint32_t>(mesh.corners.size());
   for (const float t : {0.0F, 0.5F, 1.0F}) {
@@ -261,7 +261,7 @@ SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail
   const auto all = static_cast<float>(shape.leaves);
   const float share = std::clamp(std::min(leaf_px / detail.leaf_px, 1e3F), 1.0F / detail.largest, 1.0F);
   const bool is_near = leaf_px > detail.shaped_leaf_px;
-  // The corners of a triangle are seen sooner where it stands for a pale round flower.
+  // A triangle is more noticeable if it replaces a pale round flower.
   const float largest_speck_px = (shape.has_flowers() ? 0.5F : 1.0F) * detail.speck_px;
   const bool is_speck = leaf_px / share <= largest_speck_px;
   return {.leaves = all * share * share,

@@ -19,7 +19,7 @@ constexpr float kFadesOver = 1.25F;
 ImpostorBox impostor_box(const Bounds& tree) {
   const glm::vec3 half_m = 0.5F * (tree.high_m - tree.low_m);
   const float radius_m = std::max({half_m.x, half_m.z, 0.05F});
-  // From above its top is higher in the picture, by its radius.
+  // Seen from above its top is higher in the picture, by its radius.
   return {.middle_m = 0.5F * (tree.low_m + tree.high_m),
           .half_width_m = 1.02F * radius_m,
           .half_height_m = 1.02F * std::hypot(std::max(half_m.y, 0.05F), radius_m)};

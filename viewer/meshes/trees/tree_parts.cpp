@@ -129,7 +129,7 @@ std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, 
       const glm::vec3 outward = from_middle_m / std::max(glm::length(from_middle_m), 0.1F);
       part.facing = array_of(glm::normalize(up + kOutward * outward));
       part.rest = array_of(rest_direction(strands, i));
-      // Those of a twig are alike.
+      // Those of a twig are equal.
       const double twig = level > 0 ? twigs.uniform(from.parent[i]) : first;
       part.tint = array_of(light * glm::mix(tints.deep, tints.fresh, static_cast<float>(0.4 * first + 0.6 * twig)));
     } else {

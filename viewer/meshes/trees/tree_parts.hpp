@@ -12,7 +12,7 @@ namespace yuragi::viewer::meshes::trees {
 
 /// An instance for a strand of a tree (a branch or a leaf), in the layout that the tree's shaders read.
 ///
-/// A tree's joints lie in one array, level behind level, each in the layout of JointPositions.
+/// A tree's joints are in one array, level after level, each in the layout of JointPositions.
 struct Part {
   std::array<float, 3> root_m{};  ///< position at rest
   float base_radius_m = 0.0F;     ///< of a leaf: half its width
@@ -21,7 +21,7 @@ struct Part {
   std::array<float, 3> facing{};  ///< of a leaf: the normal of its upper side; of a branch: a direction across it
   std::array<float, 3> rest{};    ///< of a leaf: unit vector from foot to tip at rest
   std::uint32_t strand = 0;
-  std::int32_t root_at = -1;  ///< index of the x of the joint that it grows from; below 0: it stands on the ground
+  std::int32_t root_at = -1;  ///< index of the x of the joint that it grows from; negative: it stands on the ground
 };
 
 /// The index in that array at which the joints of a level begin.

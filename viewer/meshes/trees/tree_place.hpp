@@ -5,7 +5,7 @@
 
 namespace yuragi::viewer::meshes::trees {
 
-/// Where a copy of a tree stands: turned about the upright axis through its own foot, scaled, and moved.
+/// The position of a copy of a tree: turned about the vertical axis through its own foot, scaled, and moved.
 struct Place {
   glm::vec3 from_m{0.0F};  ///< the foot of the tree that is copied
   glm::vec3 to_m{0.0F};    ///< the foot of the copy
@@ -13,8 +13,8 @@ struct Place {
   float sine = 0.0F;
   float scale = 1.0F;
 
-  /// From 0 to 1: by it trees differ, the one that is copied from its copies. Spread as evenly as places are (M.
-  /// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+  /// Number from 0 to 1 by which the copied tree and its copies differ. Spread as evenly as places are (M. Roberts
+  /// 2018, "The unreasonable effectiveness of quasirandom sequences").
   float chance() const {
     const glm::vec3 way_m = to_m - from_m;
     return glm::fract(0.5F + 7.548777F * way_m.x + 5.698403F * way_m.z);

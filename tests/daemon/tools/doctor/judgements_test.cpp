@@ -130,7 +130,7 @@ TEST(JudgePort, IsFreeOrADaemonOfOurs) {
   port.is_in_use = true;
   EXPECT_THAT(judge(port), is(Verdict::kError, "already in use", "sudo ss -ltnp 'sport = :7410'"));
   port.daemon = "yuragi 0.2.0";
-  EXPECT_THAT(judge(port), is(Verdict::kOk, "yuragi 0.2.0 answers", ""));
+  EXPECT_THAT(judge(port), is(Verdict::kOk, "yuragi 0.2.0 replies", ""));
   port = {.address = "10.9.9.9:7410", .trouble = "Cannot assign requested address", .port = 7410};
   EXPECT_THAT(judge(port), is(Verdict::kError, "Cannot assign", "ip address"));
 }

@@ -72,8 +72,8 @@ TEST(SensorTable, ShowsHowTheRecordingDoes) {
   sensors.recorder = wire::RecorderStatus{.written = 1200, .waiting = 3, .free_bytes = 2'340'000'000};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("recorded 1200 readings, waiting 3, lost 0; 2.3 GB free\n"));
   sensors.recorder =
-      wire::RecorderStatus{.state = wire::RecorderState::kHanging, .error = "a.windlog: the disk does not answer"};
-  EXPECT_THAT(sensor_table(sensors), HasSubstr("HANGS: a.windlog: the disk does not answer\n"));
+      wire::RecorderStatus{.state = wire::RecorderState::kHanging, .error = "a.windlog: the disk does not respond"};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("HANGS: a.windlog: the disk does not respond\n"));
   sensors.recorder->state = wire::RecorderState::kRetrying;
   EXPECT_THAT(sensor_table(sensors), HasSubstr("CANNOT WRITE, trying again: a.windlog"));
 }

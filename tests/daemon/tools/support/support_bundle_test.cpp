@@ -106,7 +106,7 @@ TEST_F(SupportBundle, OfABrokenConfigurationHasItsErrorsButNoSecrets) {
   expect_no_secret(files);
   EXPECT_THAT(files.at("configuration.toml"), HasSubstr("thing = 1"));
   EXPECT_EQ(files.at("configuration-errors.txt"), "wall.toml:1:1: wrong\n");
-  EXPECT_EQ(files.at("status.txt"), "no daemon answers\n");
+  EXPECT_EQ(files.at("status.txt"), "no daemon replies\n");
   write_config("password \"\ninline-horse");
   files = bundle_files(broken);
   expect_no_secret(files);
