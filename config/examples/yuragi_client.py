@@ -301,6 +301,10 @@ class Client:
     def __iter__(self):
         """The messages, each a Table; its `table_name` is "Hello", "Scenes", "Frame" or "Sensors"."""
         last_error, has_begun = None, False
+
+        def log(text):
+            print(f"yuragi at {self.address}: {text}", file=sys.stderr, flush=True)
+
         while True:
             connection = None
             try:
@@ -309,14 +313,16 @@ class Client:
                 for message in connection:
                     if message.table_name == "Scenes":
                         self.scenes = read_scenes(message)
-                    if message.table_name != "Hello":
+                    if message.table_name == "Hello":
+                        log(f"connected, {message.software}")
+                    else:
                         has_begun, last_error = True, None
                     yield message
             except (OSError, EOFError, ValueError, struct.error) as error:
                 if isinstance(error, Refused) and not has_begun:
                     raise
                 if str(error) != last_error:  # once, not each second
-                    print(f"yuragi at {self.address}: {error}; trying again", file=sys.stderr, flush=True)
+                    log(f"{error}; trying again")
                 last_error = str(error)
             finally:
                 if connection is not None:

@@ -54,6 +54,8 @@ RUNS_ON = (
     (DAEMON, r"listening on \S+:\d+"),
     (r"^yuragi-sim (?!recording)", r"\S"),
     (r"^yuragi sensors watch", r"\S"),
+    (r"^python3 yuragi_client.py", r"wind \S+ m/s from"),
+    (r"^python3 wind_to_osc.py", r"connected, yuragi"),
 )
 CTRL_C = (0, -signal.SIGINT, 128 + signal.SIGINT)  # exit codes of what it ends: in good order, by the signal, a shell's for that
 ENDS_WITHIN_S = HANG_S
@@ -259,6 +261,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         clone = pathlib.Path(name)
         shutil.copytree(project / "config", clone / "config")
+        (clone / "engine/wire").mkdir(parents=True)
+        shutil.copy(project / "engine/wire/pose.fbs", clone / "engine/wire")
         (clone / "build/release").mkdir(parents=True)
         (clone / "build/release/bin").symlink_to(programs)
         subprocess.run([clone / "config/examples.sh"], check=True)
