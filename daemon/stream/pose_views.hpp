@@ -48,8 +48,8 @@ class PoseViews {
 
   std::shared_ptr<PoseView> view(const wire::Thinning& thinning);
 
-  /// Why a client cannot have this Thinning of the scenes: it names one that does not exist. For a person, with the
-  /// names that exist. nullopt: it can.
+  /// Returns why a client cannot have this Thinning of the scenes, for a person: it names one that does not exist, with
+  /// the names that exist. nullopt: it can.
   std::optional<std::string> refusal(const wire::Thinning& thinning) const;
 
  private:
