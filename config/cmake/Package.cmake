@@ -10,8 +10,9 @@ install(FILES ${units_folder}/yuragi.sysusers DESTINATION lib/sysusers.d RENAME 
 # From which postinst makes /etc/yuragi/yuragi.toml, once: a file of dpkg's own would be asked about at an upgrade.
 install(FILES ${units_folder}/yuragi.toml DESTINATION share/yuragi)
 install(FILES ${package_folder}/copyright DESTINATION share/doc/yuragi)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/examples DESTINATION share/doc/yuragi PATTERN "*.log" EXCLUDE)
-install(FILES ${PROJECT_SOURCE_DIR}/config/garden.toml DESTINATION share/doc/yuragi/examples)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/examples DESTINATION share/doc/yuragi
+  PATTERN "*.log" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/config/garden.toml ${PROJECT_SOURCE_DIR}/engine/wire/pose.fbs DESTINATION share/doc/yuragi/examples)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/prometheus DESTINATION share/doc/yuragi)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/rehearsals DESTINATION share/doc/yuragi)
 

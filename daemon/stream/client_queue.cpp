@@ -56,7 +56,7 @@ void ClientQueue::offer_scenes(SharedBytes scenes) {
 }
 
 void ClientQueue::offer_frame(SharedBytes frame) {
-  if (!wanted_.poses) return;
+  if (!wants_frames()) return;
   if (pending_frame_) ++frames_skipped_;
   pending_frame_ = std::move(frame);
 }
@@ -123,7 +123,7 @@ std::optional<Overdue> ClientQueue::overdue(MonoTime now) const {
   if (dismissed_) return std::nullopt;
   if (limits_.stays_for && now - connected_ >= *limits_.stays_for) return Overdue::kStayed;
   if (!subscribed_ && now - connected_ >= limits_.subscribe_within) return Overdue::kNeverSubscribed;
-  const bool wants_nothing = !wanted_.poses && !wanted_.sensors && !wanted_.traces;
+  const bool wants_nothing = !wants_frames() && !wanted_.sensors && !wanted_.traces;
   if (subscribed_ && wants_nothing && now - asked_ >= limits_.idle_after) return Overdue::kIdle;
   return std::nullopt;
 }

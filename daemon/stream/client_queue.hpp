@@ -35,6 +35,7 @@ struct Wanted {
   bool poses = false;
   bool sensors = false;
   bool traces = false;
+  bool wind = false;  ///< frames, also without `poses`: then no scenes
 };
 
 /// The messages to one client, their order, and its time limits. One message is in flight; behind it wait at most one
@@ -58,6 +59,7 @@ class ClientQueue {
   /// to.
   void offer_scenes(SharedBytes scenes);
   bool wants_poses() const noexcept { return wanted_.poses; }
+  bool wants_frames() const noexcept { return wanted_.poses || wanted_.wind; }
 
   /// The client sent a request at `now`: it is not idle.
   void requested(MonoTime now) noexcept { asked_ = now; }

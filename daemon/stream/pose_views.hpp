@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "daemon/stream/transport.hpp"
@@ -46,8 +48,13 @@ class PoseViews {
 
   std::shared_ptr<PoseView> view(const wire::Thinning& thinning);
 
+  /// Returns why a client cannot have this Thinning of the scenes, for a person: it names one that does not exist, with
+  /// the names that exist. nullopt: it can.
+  std::optional<std::string> refusal(const wire::Thinning& thinning) const;
+
  private:
   SharedBytes scenes_, frame_;
+  std::vector<std::string> names_;  // of the scenes; each once
   std::vector<std::weak_ptr<PoseView>> views_;
 };
 

@@ -97,7 +97,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Offers the newest frame, unless the client has had it or one has been too short a time ago.
   void offer_frame() {
-    if (!is_open() || !queue_.wants_poses() || !poses_->has_frame() || poses_->sequence() == offered_frame_) return;
+    if (!is_open() || !queue_.wants_frames() || !poses_->has_frame() || poses_->sequence() == offered_frame_) return;
     if (pace_ && !pace_->take(feed_->settings.now())) return;
     offered_frame_ = poses_->sequence();
     queue_.offer_frame(poses_->frame());
@@ -107,6 +107,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void offer_scenes() {
     if (!queue_.wants_poses()) return;
     if (!takes_new_scenes_) return dismiss("the scenes have changed; connect again");
+    if (auto why = feed_->poses.refusal(poses_->thinning())) return dismiss(std::move(*why));
     queue_.offer_scenes(poses_->scenes());
     write();
   }
@@ -235,15 +236,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
 
     client_name_ = "(" + shortened(wish->client, kShownNameCharacters) + ")";
-    feed_->log->info("client {} {} subscribes to{}{}{}{}", endpoint_, client_name_, wish->poses ? " poses" : "",
+    feed_->log->info("client {} {} subscribes to{}{}{}{}", endpoint_, client_name_,
+                     wish->poses  ? " poses"
+                     : wish->wind ? " wind"
+                                  : "",
                      wish->sensors ? " sensors" : "", wish->raw ? " raw messages" : "",
-                     wish->poses || wish->sensors || wish->raw ? "" : " nothing");
+                     wish->wants_frames() || wish->sensors || wish->raw ? "" : " nothing");
     if (!is_trusted_ && !wish->token.is_empty()) {
       const auto& is_token = feed_->settings.is_token;
       is_trusted_ = is_token && is_token(wish->token.reveal());
       if (!is_trusted_) return dismiss("its token is not that of this installation");
     }
-    if (peer_.only_asks_because && (wish->poses || wish->raw)) {
+    if (peer_.only_asks_because && (wish->wants_frames() || wish->raw)) {
       ++feed_->counts.refused;
       return dismiss(*peer_.only_asks_because);
     }
@@ -251,13 +255,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish->raw && raw_refusal) {
       if (auto why = raw_refusal(is_trusted_)) return dismiss(std::move(*why));
     }
+    if (wish->poses) {
+      if (auto why = feed_->poses.refusal(wish->thinning)) return dismiss(std::move(*why));
+    }
     takes_new_scenes_ = wish->takes_new_scenes;
     wants_traces_ = wish->raw;
     traced_sensor_ = wish->raw_sensor;
     const MonoTime now = feed_->settings.now();
-    if (wish->poses) poses_ = feed_->poses.view(wish->thinning);
+    if (wish->wants_frames()) poses_ = feed_->poses.view(wish->frame_thinning());
     if (wish->rate_hz > 0.0) pace_.emplace(wish->rate_hz, now);
-    queue_.subscribe({.poses = wish->poses, .sensors = wish->sensors, .traces = wish->raw},
+    queue_.subscribe({.poses = wish->poses, .sensors = wish->sensors, .traces = wish->raw, .wind = wish->wind},
                      poses_ ? poses_->scenes() : nullptr, nullptr, feed_->newest_sensors(is_trusted_), now);
     offer_frame();
     write();
@@ -313,7 +320,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::shared_ptr<Feed> feed_;
   ClientLimits limits_;
   ClientQueue queue_;
-  std::shared_ptr<PoseView> poses_;  // null: it wants none
+  std::shared_ptr<PoseView> poses_;  // null: it wants no frames
   std::optional<FramePace> pace_;    // none: every frame
   Peer peer_;
   bool is_trusted_;  // of this machine, or it has shown the token

@@ -63,6 +63,7 @@ bool read(const fb::Subscribe& from, Subscribe& to) {
   to.takes_new_scenes = from.takes_new_scenes();
   to.thinning.every = from.every();
   to.rate_hz = from.rate_hz();
+  to.wind = from.wind();
   const std::size_t named = from.scenes() == nullptr ? 0 : from.scenes()->size();
   if (named > kMaxScenes) return false;
   for (std::size_t i = 0; i < named; ++i) {

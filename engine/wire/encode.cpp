@@ -342,7 +342,7 @@ Bytes encode(const Subscribe& subscribe) {
   return finish(builder, fb::Body_Subscribe,
                 fb::CreateSubscribe(builder, subscribe.protocol, subscribe.poses, subscribe.sensors, client,
                                     subscribe.raw, raw_sensor, subscribe.takes_new_scenes, scenes,
-                                    subscribe.thinning.every, subscribe.rate_hz, token));
+                                    subscribe.thinning.every, subscribe.rate_hz, token, subscribe.wind));
 }
 
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "engine/wire/schema.hpp"
+#include "engine/wire/decode_models.hpp"
 
 namespace yuragi::wire {
 namespace {
@@ -140,6 +140,7 @@ Thinner::Kept Thinner::thin(pose::SurfaceSkeleton& surface, std::size_t every) c
 }
 
 Thinner::Thinner(const Scenes& scenes, const Thinning& thinning) {
+  if (thinning.is_wind_alone) return;
   for (std::size_t i = 0; i < scenes.scenes.size(); ++i) {
     const SceneModel& scene = scenes.scenes[i];
     if (!thinning.scenes.empty() && std::ranges::find(thinning.scenes, scene.name) == thinning.scenes.end()) continue;
@@ -249,6 +250,17 @@ Bytes Thinner::frame(std::span<const std::uint8_t> message) const {
                       maker.buffer.CreateVector(scenes), from->wind_place(), from->view_wind_from_deg());
   fb::FinishSizePrefixedMessageBuffer(maker.buffer, fb::CreateMessage(maker.buffer, fb::Body_Frame, frame.Union()));
   return {maker.buffer.GetBufferPointer(), maker.buffer.GetBufferPointer() + maker.buffer.GetSize()};
+}
+
+std::vector<std::string> scene_names(std::span<const std::uint8_t> message) {
+  std::vector<std::string> names;
+  const fb::Scenes* scenes = fb::GetSizePrefixedMessage(message.data())->body_as_Scenes();
+  if (scenes == nullptr || scenes->scenes() == nullptr) return names;
+  for (const fb::Scene* scene : *scenes->scenes()) {
+    std::string name;
+    if (read_text(scene->name(), name)) names.push_back(std::move(name));
+  }
+  return names;
 }
 
 }  // namespace yuragi::wire

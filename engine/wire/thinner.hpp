@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/wire/wire.hpp"
@@ -14,7 +15,8 @@ namespace yuragi::wire {
 /// The result is consistent. Strands on which a kept one grows are kept. Edges of a cloth and an open surface are kept,
 /// and of each ring of a closed one at least three points. Strands on a grid remain on one if `every` divides its
 /// columns; otherwise they are on none. Leaves that were turned by blocks are each turned with the link that they grow
-/// from. The numbers of a frame are copied, not rounded again. Pure. Thread-safe: yes.
+/// from. The numbers of a frame are copied, not rounded again. A Thinning of the wind alone leaves no scene. Pure.
+/// Thread-safe: yes.
 class Thinner {
  public:
   Thinner(const Scenes& scenes, const Thinning& thinning);
@@ -45,5 +47,9 @@ class Thinner {
   Scenes scenes_;
   std::vector<Kept> kept_;
 };
+
+/// The names of the scenes in `message`, which encode() made of a Scenes, with its size prefix; printable, in the same
+/// order. Reads no skeleton.
+std::vector<std::string> scene_names(std::span<const std::uint8_t> message);
 
 }  // namespace yuragi::wire

@@ -78,8 +78,9 @@ std::optional<std::string> protocol_mismatch(const Hello& hello);
 struct Thinning {
   std::vector<std::string> scenes = {};  ///< by their names; empty: all
   std::uint32_t every = 1;               ///< every n-th of strands, columns and rows, 1 to kMaxEvery
+  bool is_wind_alone = false;            ///< no scenes at all: frames with their wind, time and number
 
-  bool is_all() const { return scenes.empty() && every == 1; }
+  bool is_all() const { return scenes.empty() && every == 1 && !is_wind_alone; }
   friend bool operator==(const Thinning&, const Thinning&) = default;
 };
 
@@ -94,6 +95,12 @@ struct Subscribe {
   Thinning thinning = {};
   double rate_hz = 0.0;  ///< maximum frames per second, up to kMaxRate_hz; 0: all
   Secret token = {};     ///< the installation's; empty: none is sent
+  bool wind = false;     ///< without `poses`: frames without scenes; otherwise it changes nothing
+
+  /// Returns true if it asks for frames, with scenes or without.
+  bool wants_frames() const { return poses || wind; }
+  /// What its frames have. `thinning` itself is what was asked for.
+  Thinning frame_thinning() const { return poses ? thinning : Thinning{.is_wind_alone = true}; }
 };
 
 /// A skeleton of a kind that this build does not know is decoded as one of zero strands, and so are its poses.

@@ -234,7 +234,7 @@ class Recorder:
     def take(self, frame):
         poses = {name: pose_client.read_pose(frame.Scenes(i)) for i, name in enumerate(self.order)}
         flag = self.models["flag"]
-        points_m = flag.points_m(poses["flag"]).reshape(flag.rows, flag.columns, 3)
+        points_m = flag.joints_m(poses["flag"]).reshape(flag.rows, flag.columns, 3)
         self.time_s.append(frame.TimeS())
         self.wind.append((frame.Wind().UMS(), -frame.Wind().VMS()))
         self.flag.append(points_m[:, self.columns].astype(np.float32))

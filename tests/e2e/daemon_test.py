@@ -611,7 +611,7 @@ port = {port}
             with Stream(address) as stream:
                 frame = stream.next("Frame")
                 (_, _, flag), = stream.scenes
-                joints_m = flag.points_m(pose_client.read_pose(frame.Scenes(0))).reshape(flag.rows, -1, 3)
+                joints_m = flag.joints_m(pose_client.read_pose(frame.Scenes(0))).reshape(flag.rows, -1, 3)
                 way_m = joints_m[-1] - joints_m[0]  # from the hoist to the fly
                 self.assertGreater(float(way_m[:, 0].mean()), 2 * abs(float(way_m[:, 1].mean())), f"{options}: it hangs")
                 self.assertGreater(stream.next("Frame").Wind().UMS(), 8.0, f"{options}: not the recording's wind")

@@ -8,7 +8,7 @@ PROJECT is the clone, BIN the folder of its programs. The lines are typed in a t
 demo: config, build/release/bin and what config/examples.sh makes. `source` and `cd` begin each terminal. A line that ends by itself
 must end with 0. A line that runs on must print what RUNS_ON expects; it is ended by Ctrl-C. `yuragi run` and `yuragi replay` are
 ended only when the next of them or the next page begins, so that the lines between find a daemon. A line is typed once for each
-daemon. Lines in NOT_RUN are counted and not run. TOML is given to `yuragi check-config`.
+daemon. Lines in NOT_RUN are counted and not run. TOML is given to `yuragi check-config`; Python, which begins with "from", is compiled.
 """
 import collections
 import fcntl
@@ -54,6 +54,8 @@ RUNS_ON = (
     (DAEMON, r"listening on \S+:\d+"),
     (r"^yuragi-sim (?!recording)", r"\S"),
     (r"^yuragi sensors watch", r"\S"),
+    (r"^python3 yuragi_client.py", r"wind \S+ m/s from"),
+    (r"^python3 wind_to_osc.py", r"connected, yuragi"),
 )
 CTRL_C = (0, -signal.SIGINT, 128 + signal.SIGINT)  # exit codes of what it ends: in good order, by the signal, a shell's for that
 ENDS_WITHIN_S = HANG_S
@@ -78,8 +80,9 @@ def code_blocks(text):
 
 
 def kind_of(block):
-    """"toml" or "lines"."""
-    return "toml" if next(line for line in block if line.strip()).startswith("[") else "lines"
+    """"toml", "python" or "lines"."""
+    first = next(line for line in block if line.strip())
+    return "toml" if first.startswith("[") else "python" if first.startswith("from ") else "lines"
 
 
 def documents_of(project):
@@ -253,12 +256,23 @@ def enter_network_of_its_own():
     print("no network of its own: the addresses that the documents name must be free")
 
 
+def check_python(terminal, block, folder):
+    """A program of a document: its imports work, and the rest can be compiled."""
+    compile("\n".join(block), "the guide", "exec")
+    done = subprocess.run([sys.executable, "-c", block[0]], cwd=folder, capture_output=True, text=True, timeout=HANG_S, check=False)
+    terminal.counts["programs in Python"] += 1
+    if done.returncode != 0:
+        terminal.complaints.append(f"{block[0]}\n{done.stderr}")
+
+
 def main():
     enter_network_of_its_own()
     project, programs = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     with tempfile.TemporaryDirectory() as name:
         clone = pathlib.Path(name)
         shutil.copytree(project / "config", clone / "config")
+        (clone / "engine/wire").mkdir(parents=True)
+        shutil.copy(project / "engine/wire/pose.fbs", clone / "engine/wire")
         (clone / "build/release").mkdir(parents=True)
         (clone / "build/release/bin").symlink_to(programs)
         subprocess.run([clone / "config/examples.sh"], check=True)
@@ -269,6 +283,8 @@ def main():
             terminal.begin_page()
             for line in lines_of(document):
                 terminal.type(line)
+            for block in blocks_of(document, "python"):
+                check_python(terminal, block, clone / "build/examples")
             for text in configurations_of(document):
                 check_toml(terminal, text, clone / "build/examples")
         if configurations_of(project / "README.md")[0] != (project / "config/examples/roof.toml").read_text(encoding="utf-8"):

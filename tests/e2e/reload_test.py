@@ -64,7 +64,7 @@ class Frames(threading.Thread):
                 opacities = {}
                 for index, name in enumerate(names):
                     opacities[name] = max(opacities.get(name, 0.0), table.Scenes(index).Opacity())
-                joints_m = numpy.asarray(model.points_m(pose_client.read_pose(table.Scenes(0))))
+                joints_m = numpy.asarray(model.joints_m(pose_client.read_pose(table.Scenes(0))))
                 with self.news:
                     if not self.lists or self.lists[-1] != names:
                         self.lists.append(names)

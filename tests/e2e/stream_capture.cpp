@@ -4,16 +4,14 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "engine/pose/point_kinematics.hpp"
-#include "engine/pose/strand_kinematics.hpp"
-#include "engine/pose/tree_kinematics.hpp"
+#include "engine/pose/kinematics.hpp"
+#include "engine/pose/pose_arrays.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
 
-// stream_capture FOLDER: writes stream.bin, a stream as it goes over the wire, and beside it points.f32: x, y, z
-// (float, little-endian) of what our own kinematics makes of the last frame, scene by scene: the tips of strands and of
-// each level of a tree, all joints of a cloth, all points of a surface. stream_schema_test.py reads the first by the
-// schema's comments alone, and compares.
+// stream_capture FOLDER: writes stream.bin, a stream as it goes over the wire, and beside it joints.f32: x, y, z
+// (float, little-endian) of what our own kinematics makes of the last frame: every joint, scene by scene.
+// stream_schema_test.py reads the first by the schema's comments alone, and compares.
 
 namespace {
 
@@ -25,40 +23,11 @@ void write(const std::filesystem::path& file, const void* data, std::size_t size
   out.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
 }
 
-template <class Job>
-void run(const Job& job) {
-  if (job.run() != Job::Problem::kNone) throw std::logic_error("skeleton and pose do not fit");
-}
-
-void add_tips(const pose::StrandSkeleton& skeleton, const pose::JointPositions& joints,
-              std::vector<pose::JointPosition>& points) {
-  for (std::size_t strand = 0; strand < skeleton.strand_count; ++strand)
-    points.push_back(joints.joint(strand, skeleton.links_per_strand - 1));
-}
-
 /// What our own kinematics makes of a pose that a client decoded.
-void add_points(const pose::Skeleton& skeleton, const pose::Pose& pose, std::vector<pose::JointPosition>& points) {
-  if (const auto* strands = std::get_if<pose::StrandSkeleton>(&skeleton)) {
-    pose::JointPositions joints(*strands);
-    run(pose::StrandKinematicsJob{
-        .skeleton = strands, .pose = &std::get<pose::StrandPose>(pose), .row = {}, .joints = &joints});
-    add_tips(*strands, joints, points);
-  } else if (const auto* grid = std::get_if<pose::GridSkeleton>(&skeleton)) {
-    pose::PointPositions joints(*grid);
-    run(pose::GridKinematicsJob{.skeleton = grid, .pose = &std::get<pose::GridPose>(pose), .points = &joints});
-    for (std::size_t i = 0; i < joints.size(); ++i)
-      if (i % grid->stride() < grid->columns) points.push_back(joints.point(i));
-  } else if (const auto* tree = std::get_if<pose::TreeSkeleton>(&skeleton)) {
-    pose::TreeJoints joints(*tree);
-    run(pose::TreeKinematicsJob{
-        .skeleton = tree, .pose = &std::get<pose::TreePose>(pose), .row = {}, .joints = &joints});
-    for (std::size_t i = 0; i < tree->levels.size(); ++i) add_tips(tree->levels[i].strands, joints.level(i), points);
-  } else {
-    const auto& surface = std::get<pose::SurfaceSkeleton>(skeleton);
-    pose::PointPositions moved(surface);
-    run(pose::SurfaceKinematicsJob{.skeleton = &surface, .pose = &std::get<pose::SurfacePose>(pose), .points = &moved});
-    for (std::size_t i = 0; i < moved.size(); ++i) points.push_back(moved.point(i));
-  }
+void add_joints(const pose::Skeleton& skeleton, const pose::Pose& pose, std::vector<pose::JointPosition>& joints) {
+  pose::Kinematics kinematics(skeleton);
+  if (!kinematics.run(pose)) throw std::logic_error("skeleton and pose do not fit");
+  for (std::size_t i = 0; i < pose::node_count(skeleton); ++i) joints.push_back(kinematics.joint(i));
 }
 
 void capture(const std::filesystem::path& folder) {
@@ -95,13 +64,13 @@ void capture(const std::filesystem::path& folder) {
     stream.insert(stream.end(), newest.begin(), newest.end());
   }
 
-  // The points of what a client decodes: the quantised pose, not the one that it was made of.
+  // The joints of what a client decodes: the quantised pose, not the one that it was made of.
   const auto frame = std::get<wire::Frame>(wire::decode(samples::body(newest)).value());
-  std::vector<pose::JointPosition> points;
+  std::vector<pose::JointPosition> joints;
   for (std::size_t i = 0; i < frame.poses.size(); ++i)
-    if (frame.opacities[i] > 0.0f) add_points(scenes.scenes[i].skeleton, frame.poses[i], points);
+    if (frame.opacities[i] > 0.0f) add_joints(scenes.scenes[i].skeleton, frame.poses[i], joints);
   write(folder / "stream.bin", stream.data(), stream.size());
-  write(folder / "points.f32", points.data(), points.size() * sizeof(pose::JointPosition));
+  write(folder / "joints.f32", joints.data(), joints.size() * sizeof(pose::JointPosition));
 }
 
 }  // namespace

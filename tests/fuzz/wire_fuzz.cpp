@@ -68,11 +68,13 @@ void demand_consistency(const wire::Message& message) {
       static const wire::Bytes frame = samples::frame_of_all_kinds();
       if (!wire::decode(samples::body(thinner.frame(frame)))) std::abort();
     }
+    if (wire::scene_names(wire::encode(*scenes)).size() != scenes->scenes.size()) std::abort();
   }
   if (const auto* wish = std::get_if<wire::Subscribe>(&message)) {
     if (wish->thinning.scenes.size() > wire::kMaxScenes) std::abort();
     if (wish->thinning.every < 1 || wish->thinning.every > wire::kMaxEvery) std::abort();
     if (!(wish->rate_hz >= 0.0 && wish->rate_hz <= wire::kMaxRate_hz)) std::abort();
+    if (wish->frame_thinning().is_wind_alone == wish->poses) std::abort();
   }
   if (const auto* trace = std::get_if<wire::RawTrace>(&message)) {
     if (trace->bytes.size() > wire::kMaxRawBytes || trace->bytes.size() > trace->length) std::abort();

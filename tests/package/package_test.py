@@ -58,6 +58,7 @@ CONTENTS = [
     "usr/lib/yuragi/daily-report",
     "usr/share/doc/yuragi/changelog.gz",
     "usr/share/doc/yuragi/copyright",
+    *[f"usr/share/doc/yuragi/examples/{name}" for name in ("yuragi_client.py", "wind_to_osc.py", "pose.fbs", "wall.toml")],
     *[f"usr/share/yuragi/guide/{name}" for name in ("index.html", "keys.html", "troubleshooting.html", "guide.css")],
     "usr/share/yuragi/profiles/generic-rs485-cup.toml",
 ]

@@ -239,7 +239,8 @@ TEST_F(ClientQueueTest, OneWhoNeverSubscribesIsOverdue) {
 }
 
 TEST_F(ClientQueueTest, OneWhoSubscribedToSomethingMaySitStill) {
-  for (const Wanted wanted : {Wanted{.poses = true}, Wanted{.sensors = true}, Wanted{.traces = true}}) {
+  for (const Wanted wanted :
+       {Wanted{.poses = true}, Wanted{.sensors = true}, Wanted{.traces = true}, Wanted{.wind = true}}) {
     ClientQueue queue(ClientLimits{}, message("hello "), at(0s));
     queue.written(queue.to_write(at(0s)).size(), at(0s));
     queue.subscribe(wanted, nullptr, nullptr, nullptr, at(0s));

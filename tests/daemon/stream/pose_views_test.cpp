@@ -35,6 +35,38 @@ TEST(PoseViews, WhoeverWantsEverythingGetsTheBytesAsTheyAre) {
   EXPECT_EQ(views.view({})->frame(), frame);
 }
 
+TEST(PoseViews, TheWindAloneHasNoScenesAndIsMadeOnceForAll) {
+  PoseViews views;
+  views.set_scenes(shared(wire::encode(samples::all_kinds())));
+  views.set_frame(shared(samples::frame_of_all_kinds()));
+  const auto a = views.view({.is_wind_alone = true});
+  EXPECT_EQ(a, views.view({.is_wind_alone = true}));
+  EXPECT_EQ(a->scenes(), nullptr);
+  EXPECT_EQ(a->frame(), a->frame());
+  EXPECT_LT(a->frame()->size(), 200U);
+  views.set_scenes(shared(wire::encode(samples::scenes())));
+  EXPECT_EQ(a->scenes(), nullptr);
+  views.set_frame(shared(samples::frame_bytes()));
+  EXPECT_TRUE(a->has_frame());
+}
+
+TEST(PoseViews, ANameThatNoSceneHasIsRefusedWithTheNamesThatExist) {
+  PoseViews views;
+  EXPECT_EQ(views.refusal({.scenes = {"meadow"}}), "there are no scenes");
+  wire::Scenes scenes = samples::scenes();
+  scenes.scenes.push_back(scenes.scenes[0]);  // while one fades out
+  views.set_scenes(shared(wire::encode(scenes)));
+  EXPECT_EQ(views.refusal({}), std::nullopt);
+  EXPECT_EQ(views.refusal({.is_wind_alone = true}), std::nullopt);
+  EXPECT_EQ(views.refusal({.scenes = {"bank", "meadow"}}), std::nullopt);
+  EXPECT_EQ(views.refusal({.scenes = {"bank", "medow"}}),
+            R"(there is no scene "medow"; the scenes are: "meadow", "bank")");
+  EXPECT_EQ(views.refusal({.scenes = {""}}), R"(there is no scene ""; the scenes are: "meadow", "bank")");
+  EXPECT_LT(views.refusal({.scenes = {std::string(1000, 'x')}}).value_or("").size(), 200U);
+  views.set_scenes(shared(wire::encode(samples::all_kinds())));
+  EXPECT_NE(views.refusal({.scenes = {"bank"}}), std::nullopt) << "its scene has gone";
+}
+
 TEST(PoseViews, WithNewScenesThereIsNoFrameUntilThereIsOneOfThem) {
   PoseViews views;
   views.set_scenes(shared(wire::encode(samples::scenes())));

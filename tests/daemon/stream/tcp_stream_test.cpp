@@ -417,6 +417,88 @@ TEST_F(TcpStreamTest, WhoeverWantsLessGetsLessOfNewScenesToo) {
   EXPECT_TRUE(wire::fits(thin.last_frame, thin.scenes[1]));
 }
 
+wire::Bytes subscribe_to_wind(double rate_hz = 0.0) {
+  return wire::encode(wire::Subscribe{.poses = false, .client = "a lamp", .rate_hz = rate_hz, .wind = true});
+}
+
+TEST_F(TcpStreamTest, WhoeverWantsTheWindAloneGetsFramesWithoutScenes) {
+  const LogCapture log;
+  stream_.publish(frame(1));
+  TestClient lamp(io_, stream_.local_endpoint());
+  lamp.send(subscribe_to_wind());
+  ASSERT_TRUE(turn_until([&] { return lamp.frames.size() == 1; })) << "the newest, at once";
+  stream_.publish_scenes(other_scenes());
+  stream_.publish(frame(2));
+  ASSERT_TRUE(turn_until([&] { return lamp.frames.size() == 2; }));
+  EXPECT_EQ(lamp.kinds, (std::vector<std::size_t>{0, 3, 3})) << "hello, frame, frame";
+  EXPECT_TRUE(lamp.last_frame.poses.empty());
+  EXPECT_NEAR(lamp.last_frame.info.wind.wind.u_m_s, samples::frame_info().wind.wind.u_m_s, 1e-6);
+  EXPECT_FALSE(lamp.closed) << "new scenes are nothing to it";
+  EXPECT_THAT(log.text(), testing::HasSubstr("(a lamp) subscribes to wind\n"));
+}
+
+TEST_F(TcpStreamTest, WithPosesAWishForTheWindChangesNothing) {
+  TestClient wall(io_, stream_.local_endpoint());
+  wall.send(wire::encode(wire::Subscribe{.client = "wall", .wind = true}));
+  stream_.publish(frame(1));
+  ASSERT_TRUE(turn_until([&] { return wall.frames.size() == 1; }));
+  EXPECT_EQ(wall.kinds, (std::vector<std::size_t>{0, 2, 3}));
+  EXPECT_FALSE(wall.last_frame.poses.empty());
+}
+
+TEST_F(TcpStreamTest, TheWindAloneKeepsItsRate) {
+  TestClient lamp(io_, stream_.local_endpoint());
+  TestClient fast(io_, stream_.local_endpoint());
+  lamp.send(subscribe_to_wind(10.0));
+  fast.send(subscribe_to_wind());
+  stream_.publish(frame(1));
+  ASSERT_TRUE(turn_until([&] { return lamp.frames.size() == 1 && fast.frames.size() == 1; }));
+  for (std::uint64_t i = 2; i <= 60; ++i) {
+    now_ += Nanoseconds(1s) / 60;
+    stream_.publish(frame(i));
+    ASSERT_TRUE(turn_until([&] { return fast.frames.size() == i; })) << i;
+  }
+  EXPECT_GE(lamp.frames.size(), 9U);
+  EXPECT_LE(lamp.frames.size(), 11U);
+}
+
+TEST_F(TcpStreamTest, WhoeverNamesASceneThatDoesNotExistIsRefusedWithTheNamesThatExist) {
+  for (const char* name : {"medow", "-"}) {  // "-": older programs asked for the wind alone by it
+    TestClient client(io_, stream_.local_endpoint());
+    client.send(subscribe_to({.scenes = {"meadow", name}}));
+    ASSERT_TRUE(turn_until([&] { return client.closed; })) << name;
+    ASSERT_EQ(client.hellos.size(), 2U);
+    EXPECT_EQ(client.hellos[1].refused,
+              "there is no scene \"" + std::string(name) + R"("; the scenes are: "meadow", "bank")");
+    EXPECT_TRUE(client.scenes.empty());
+  }
+  TestClient table(io_, stream_.local_endpoint());
+  table.send(wire::encode(
+      wire::Subscribe{.poses = false, .sensors = true, .client = "table", .thinning = {.scenes = {"medow"}}}));
+  publish_sensors();
+  ASSERT_TRUE(turn_until([&] { return !table.sensors.empty(); })) << "without poses the names have no effect";
+}
+
+TEST_F(TcpStreamTest, WhoseSceneVanishesIsLetGoWithTheReasonAndTheOthersStay) {
+  TestClient bank(io_, stream_.local_endpoint());
+  TestClient meadow(io_, stream_.local_endpoint());
+  TestClient both(io_, stream_.local_endpoint());
+  bank.send(subscribe_to({.scenes = {"bank"}}));
+  meadow.send(subscribe_to({.scenes = {"meadow"}}));
+  both.send(subscribe_to({.scenes = {"meadow", "bank"}}));
+  ASSERT_TRUE(turn_until([&] { return bank.scenes.size() + meadow.scenes.size() + both.scenes.size() == 3; }));
+  wire::Scenes left = samples::scenes();
+  left.scenes.pop_back();  // the bank
+  stream_.publish_scenes(share(wire::encode(left)));
+  ASSERT_TRUE(turn_until([&] { return bank.closed && both.closed && meadow.scenes.size() == 2; }));
+  for (const TestClient* client : {&bank, &both}) {
+    ASSERT_EQ(client->hellos.size(), 2U);
+    EXPECT_EQ(client->hellos[1].refused, R"(there is no scene "bank"; the scenes are: "meadow")");
+    EXPECT_EQ(client->scenes.size(), 1U);
+  }
+  EXPECT_FALSE(meadow.closed);
+}
+
 TEST_F(TcpStreamTest, ARateIsKeptAndTheLastFrameComesAllTheSame) {
   TestClient slow(io_, stream_.local_endpoint());
   TestClient fast(io_, stream_.local_endpoint());

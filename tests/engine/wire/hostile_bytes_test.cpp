@@ -554,6 +554,19 @@ TEST(HostileBytes, AVeryLongTextIsRefused) {
   EXPECT_EQ(result.error(), Error::kInconsistent);
 }
 
+TEST(HostileBytes, AWishForTheWindIsYesOrNoWhateverTheByte) {
+  for (const std::uint8_t byte : std::array<std::uint8_t, 4>{0, 1, 2, 255}) {
+    const auto result = decode_built(fb::Body_Subscribe, [&](auto& builder) {
+      fb::SubscribeBuilder table(builder);
+      table.add_protocol(1);
+      builder.template AddElement<std::uint8_t>(fb::Subscribe::VT_WIND, byte, 0);
+      return table.Finish().Union();
+    });
+    ASSERT_TRUE(result.has_value()) << int{byte};
+    EXPECT_EQ(std::get<Subscribe>(*result).wind, byte != 0) << int{byte};
+  }
+}
+
 TEST(HostileBytes, ARawTraceOfMoreThanIsPromisedIsRefused) {
   const auto trace = [](std::size_t kept, std::uint32_t length) {
     return decode_built(fb::Body_RawTrace, [&](auto& builder) {

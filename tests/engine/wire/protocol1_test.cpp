@@ -265,6 +265,26 @@ TEST(Protocol1, ItsClientsRequestsAreUnderstoodToday) {
   EXPECT_FALSE(subscribe.takes_new_scenes) << "it would take other scenes for a mistake";
   EXPECT_TRUE(subscribe.thinning.is_all()) << "it would not know that there is more";
   EXPECT_EQ(subscribe.rate_hz, 0.0);
+  EXPECT_FALSE(subscribe.wind);
+}
+
+/// It sends only Hello, Sensors and replies to a client without poses.
+TEST(Protocol1, ItsServerUnderstandsOneWhoWantsTheWindAlone) {
+  const Bytes bytes = encode(Subscribe{.poses = false, .client = "a lamp", .wind = true});
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  ASSERT_TRUE(p1::VerifySizePrefixedMessageBuffer(verifier));
+  const auto* subscribe = p1::GetSizePrefixedMessage(bytes.data())->body_as_Subscribe();
+  ASSERT_NE(subscribe, nullptr);
+  EXPECT_FALSE(subscribe->poses());
+  EXPECT_EQ(subscribe->client()->str(), "a lamp");
+}
+
+TEST(Protocol1, ItsClientReadsAFrameOfTheWindAlone) {
+  FirstClient client;
+  client.take(Thinner(Scenes{}, {.is_wind_alone = true}).frame(samples::frame_of_all_kinds()));
+  EXPECT_EQ(client.bodies(), (std::vector{p1::Body_Frame}));
+  EXPECT_NEAR(client.wind_u_m_s(), samples::frame_info().wind.wind.u_m_s, 1e-6);
+  EXPECT_TRUE(client.shown().empty());
 }
 
 TEST(Protocol1, ItsServerUnderstandsOneWhoWantsLessAndSendsEverything) {

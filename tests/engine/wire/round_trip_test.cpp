@@ -60,6 +60,19 @@ TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).poses);
 }
 
+TEST(WireRoundTrip, ASubscriptionToTheWindAloneComesBack) {
+  const Subscribe wind =
+      decoded<Subscribe>(encode(Subscribe{.poses = false, .client = "", .rate_hz = 20.0, .wind = true}));
+  EXPECT_TRUE(wind.wind);
+  EXPECT_TRUE(wind.wants_frames());
+  EXPECT_EQ(wind.rate_hz, 20.0);
+  EXPECT_TRUE(wind.frame_thinning().is_wind_alone);
+  EXPECT_FALSE(wind.frame_thinning().is_all());
+  const Subscribe both = decoded<Subscribe>(encode(Subscribe{.client = "", .thinning = {.every = 3}, .wind = true}));
+  EXPECT_EQ(both.frame_thinning(), Thinning{.every = 3}) << "with poses it changes nothing";
+  EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).wants_frames());
+}
+
 TEST(WireRoundTrip, ASubscriptionThatCannotBeMetIsRefused) {
   const auto outcome = [](const Subscribe& wish) { return decode(samples::body(encode(wish))).has_value(); };
   EXPECT_TRUE(outcome({.client = "", .thinning = {.every = kMaxEvery}, .rate_hz = kMaxRate_hz}));

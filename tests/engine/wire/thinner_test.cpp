@@ -168,6 +168,33 @@ TEST(Thinner, OnlyTheScenesThatAreWantedCome) {
   EXPECT_TRUE(received({.scenes = {"nothing"}}).scenes.scenes.empty());
 }
 
+TEST(Thinner, TheWindAloneHasNoScenesAndAllElseOfTheFrame) {
+  const Bytes whole = samples::frame_of_all_kinds();
+  const Thinner thinner(samples::all_kinds(), {.is_wind_alone = true});
+  EXPECT_TRUE(thinner.scenes().scenes.empty());
+  const Bytes bytes = thinner.frame(whole);
+  EXPECT_EQ(bytes.size(), 144U) << "as pose.fbs states";
+  const Frame wind = frame_in(bytes);
+  const Frame all = frame_in(whole);
+  EXPECT_TRUE(wind.poses.empty());
+  EXPECT_TRUE(fits(wind, thinner.scenes()));
+  EXPECT_EQ(wind.info.sequence, all.info.sequence);
+  EXPECT_EQ(wind.info.tick, all.info.tick);
+  EXPECT_EQ(wind.info.time_s, all.info.time_s);
+  EXPECT_EQ(wind.info.utc_ns, all.info.utc_ns);
+  EXPECT_EQ(wind.info.view_wind_from_deg, all.info.view_wind_from_deg);
+  EXPECT_EQ(wind.info.wind.wind.u_m_s, all.info.wind.wind.u_m_s);
+  EXPECT_EQ(wind.info.wind.upwind_m, all.info.wind.upwind_m);
+}
+
+TEST(Thinner, TheNamesOfScenesAreReadFromTheirMessage) {
+  std::vector<std::string> names;
+  for (const SceneModel& scene : samples::all_kinds().scenes) names.push_back(scene.name);
+  EXPECT_EQ(scene_names(encode(samples::all_kinds())), names);
+  EXPECT_TRUE(scene_names(encode(Scenes{})).empty());
+  EXPECT_TRUE(scene_names(encode(Hello{})).empty());
+}
+
 TEST(Thinner, AHiddenSceneStaysHidden) {
   const Received got = received({.every = 2}, samples::frame_of_all_kinds({1.0f, 0.0f, 1.0f, 0.0f, 1.0f}));
   EXPECT_EQ(got.frame.opacities, (std::vector<float>{1.0f, 0.0f, 1.0f, 0.0f, 1.0f}));
