@@ -11,7 +11,7 @@ namespace yuragi::wind::blend {
 /// coarse.
 ///
 /// A reading without a direction keeps the last one, or takes another that is offered. In a calm (below 0.5 m/s) a vane
-/// points anywhere: the direction is held, the more the calmer it is (engine/wind/README.md W37). A vane of 8 or 16
+/// points anywhere: the direction is held, the more the calmer it is (engine/wind/model.md W37). A vane of 8 or 16
 /// points jumps: its directions are low-passed at the frequency above which its quantisation noise is stronger than the
 /// turbulence (W31). All turns are the shorter way round. Thread-safe: no. Realtime-safe: yes.
 class DirectionKeeper {

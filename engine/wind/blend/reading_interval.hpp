@@ -5,7 +5,7 @@
 
 namespace yuragi::wind::blend {
 
-/// How often a source reports something new, from the gaps between its readings (engine/wind/README.md W38).
+/// How often a source reports something new, from the gaps between its readings (engine/wind/model.md W38).
 ///
 /// A station that speaks regularly has the median of its last nine gaps. One that speaks in bursts (it repeats each
 /// message, or sends several at once, or has two rates in turn) would be taken for a quick one by that: what lies

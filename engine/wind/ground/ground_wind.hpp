@@ -29,7 +29,7 @@ struct WindSlope {
 };
 
 /// The wind over the ground at one moment: the measured wind, where it has been carried to by now, and the noise that
-/// fills what is not measured there (engine/wind/README.md W26). Finite. Refers to the tapes of what was measured;
+/// fills what is not measured there (engine/wind/model.md W26). Finite. Refers to the tapes of what was measured;
 /// without them (nothing is measured, or a test) all places have the same but for their own gusts. Thread-safe and
 /// realtime-safe: reading, yes.
 struct GroundWind {

@@ -14,7 +14,7 @@
 namespace yuragi::wind::ground {
 
 /// The measured wind, where it is by now: the tapes of all places that have a sensor, and how much of what is written
-/// on them is still valid at any place over the ground (engine/wind/README.md W24 to W27).
+/// on them is still valid at any place over the ground (engine/wind/model.md W24 to W27).
 ///
 /// At a place x, a way D = (x - pen) . ahead downwind of the pen, the tape is read D of the way ago. The air of that
 /// moment is by now at P = its pen + how far it has been carried since, and the place is |x - P| away from it: across

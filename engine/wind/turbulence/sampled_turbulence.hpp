@@ -6,7 +6,7 @@
 
 namespace yuragi::wind::turbulence {
 
-// What instantaneous samples show of turbulence with von Karman's spectrum (engine/wind/README.md W39, W40). A sample
+// What instantaneous samples show of turbulence with von Karman's spectrum (engine/wind/model.md W39, W40). A sample
 // every `interval` has the whole variance: the waves that are too quick for it are folded onto slower ones.
 // Thread-safe.
 
