@@ -60,7 +60,8 @@ const Fields<Settings> kJsonFields = {
      &Settings::every,
      from_seconds},
     {{"interval", "s", 0.0, 0.0, 86400.0,
-      "without `time`: unchanged values count as a new reading only after this long; 0: ten times `every`"},
+      "how often the source has a new value: without `time`, unchanged values count as a new reading only after this "
+      "long; without a new reading the wind counts as unchanged for twice as long; 0: ten times `every`"},
      &Settings::interval,
      from_seconds},
     {{"silence", "s", 5400.0, 1.0, 86400.0, "with `time`: an observation that is older is no longer the wind"},
@@ -182,6 +183,7 @@ const sensor::DriverDescription kJsonDriver{
     .open = open_json,
     .endpoints = json_endpoints,
     .selection = json_selection,
+    .unchanged_for_s = [](const ParameterValues& values) { return 2.0 * seconds(interval_of(kJsonFields.of(values))); },
     .promises = [](const ParameterValues& values) -> sensor::PromisedQuantities {
       return {.direction = !values.text("direction").empty(), .gust = !values.text("gust").empty()};
     },

@@ -30,8 +30,7 @@ Nanoseconds longest_wait(Nanoseconds every) {
 }
 
 Nanoseconds unchanged_after(const Settings& settings) {
-  const Nanoseconds interval = settings.interval > Nanoseconds::zero() ? settings.interval : 10 * settings.every;
-  return interval - std::min(interval, settings.every) / kEarlyPart;
+  return interval_of(settings) - std::min(interval_of(settings), settings.every) / kEarlyPart;
 }
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
@@ -64,6 +63,11 @@ std::string_view remedy_of(int status) {
 }
 
 }  // namespace
+
+Nanoseconds interval_of(const Settings& settings) {
+  if (settings.interval <= Nanoseconds::zero()) return 10 * settings.every;
+  return std::max(settings.interval, settings.every);
+}
 
 Sensor::Sensor(const Settings& settings, std::string where, std::unique_ptr<bus::HttpClient> client)
     : sensor::ReopeningSensor(sensor::seed_of("json" + where)),
@@ -168,13 +172,13 @@ void Sensor::publish(Novelty novelty, const Instant& now, sensor::Sink& sink) {
                               where_, seconds(settings_.silence)),
                   sink);
   report_connected(sink, "server " + where_);
+  if (novelty == Novelty::kRepeated) return;
   const bool is_uncertain = last.wind.status == decode::DecodedStatus::kUncertain;
   sink.reading({.time = now,
                 .speed_m_s = *last.wind.speed_m_s,
                 .direction_deg = last.wind.direction_deg,
                 .gust_m_s = last.wind.gust_m_s,
-                .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood,
-                .is_held = novelty == Novelty::kRepeated});
+                .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood});
 }
 
 void Sensor::refuse(Refusal why, const std::string& detail, sensor::Sink& sink) {

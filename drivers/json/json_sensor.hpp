@@ -20,8 +20,12 @@ struct Settings {
   Nanoseconds silence = std::chrono::minutes(90);
 };
 
-/// Polls a server for JSON. After an error of the server or the network it waits longer each time, and at least as long
-/// as the server asks for, up to an hour. Its status and its log lines have nothing of the URL but host and port.
+/// How often the source has a new value, as far as the settings know.
+Nanoseconds interval_of(const Settings& settings);
+
+/// Polls a server for JSON. A repeated observation is no reading. After an error of the server or the network it waits
+/// longer each time, and at least as long as the server asks for, up to an hour. Its status and its log lines have
+/// nothing of the URL but host and port.
 class Sensor final : public sensor::ReopeningSensor {
  public:
   /// `where`: the server, for people. `client`: of settings.resource.

@@ -12,7 +12,7 @@ namespace yuragi::drivers::json {
 /// What an answer is.
 enum class Novelty : std::uint8_t {
   kNew,       ///< a new observation
-  kRepeated,  ///< the last one again, which still holds
+  kRepeated,  ///< the last one again, which is still the wind
   kOld,       ///< an observation that no longer holds: of a station that has stopped
 };
 
