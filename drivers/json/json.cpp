@@ -184,9 +184,6 @@ const sensor::DriverDescription kJsonDriver{
     .endpoints = json_endpoints,
     .selection = json_selection,
     .unchanged_for_s = [](const ParameterValues& values) { return 2.0 * seconds(interval_of(kJsonFields.of(values))); },
-    .promises = [](const ParameterValues& values) -> sensor::PromisedQuantities {
-      return {.direction = !values.text("direction").empty(), .gust = !values.text("gust").empty()};
-    },
     .simulated = json_simulated};
 
 }  // namespace yuragi::drivers::json
