@@ -62,6 +62,7 @@ void add_wind(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
 void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
   Family speed = gauge("yuragi_sensor_speed_meters_per_second", "Last reading of each sensor, calibrated");
   Family direction = gauge("yuragi_sensor_direction_degrees", "Its direction, clockwise from north");
+  Family gust = gauge("yuragi_sensor_gust_meters_per_second", "Its gust, if it reports one");
   Family age = gauge("yuragi_sensor_age_seconds", "Time since the last reading");
   Family believed = gauge("yuragi_sensor_believed", "1 if its readings are used for the wind");
   Family missing = gauge("yuragi_sensor_quantity_missing", "1 if readings come without what they should have");
@@ -79,6 +80,7 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
     };
     if (sensor.speed_m_s) speed.add(*sensor.speed_m_s, labels);
     if (sensor.direction_deg) direction.add(*sensor.direction_deg, labels);
+    if (sensor.gust_m_s) gust.add(*sensor.gust_m_s, labels);
     if (sensor.readings > 0) age.add(sensor.age_s, labels);
     believed.add(is_believed(sensor.state) ? 1.0 : 0.0, labels);
     for (const wire::QuantityStatus& quantity : sensor.quantities)
@@ -91,7 +93,7 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
     reconnects.add(sensor.reconnects, labels);
   }
   for (Family* family :
-       {&speed, &direction, &age, &believed, &missing, &state, &readings, &messages, &refused, &reconnects})
+       {&speed, &direction, &gust, &age, &believed, &missing, &state, &readings, &messages, &refused, &reconnects})
     all.push_back(family->take());
 }
 

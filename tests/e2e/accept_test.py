@@ -120,6 +120,8 @@ class Accept(unittest.TestCase):
         config = self.config('name = "console"\ndriver = "ecowitt-push"\nhost = "0.0.0.0"\nfrom = "192.0.2.0/24"\npath = "/roof/"\n'
                              f'station_key = "hunter2"\nport = {free_port()}',
                              f'name = "live"\ndriver = "weatherlink"\nhost = "192.0.2.8"\nport = {free_port(socket.SOCK_DGRAM)}',
+                             'name = "airport"\ndriver = "json"\nurl = "https://192.0.2.9/metar?key=hunter2"\nspeed = "/0/wspd"\n'
+                             'direction = "/0/wdir"\ntime = "/0/obsTime"\nspeed_unit = "kn"',
                              f'name = "show"\ndriver = "osc"\naddress = "/roof"\nspeed_argument = 2\nport = {free_port(socket.SOCK_DGRAM)}')
         done = self.accept(config, "--simulated-only", "--json")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)

@@ -19,6 +19,8 @@ import urllib.request
 from programs import HANG_S, Program, free_port
 
 YURAGI = os.path.join(os.path.abspath(sys.argv.pop(1)), "yuragi")
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../config/prometheus/yuragi.dashboard.json"), encoding="utf-8") as file:
+    DASHBOARD = json.load(file)
 SMALL_MEADOW = '[[scene]]\nname = "meadow"\nkind = "grass"\nblades_across = 20\nblades_deep = 20\n'
 
 
@@ -71,6 +73,52 @@ class Http(unittest.TestCase):
         code, text = self.ask("/api/v1/scenes", {"scene": "sea"})
         self.assertEqual(code, 409)
         self.assertIn("sea", json.loads(text)["detail"])
+
+    def test_the_dashboard_shows_metrics_and_labels_that_there_are(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.start_daemon(f'[recording]\nfile = "{folder}/wall.windlog"\n[[sensor]]\nname = "roof"\ndriver = "synthetic"\n')
+        text = self.wait_for("/metrics", 200, r'(?s)yuragi_lateness_seconds.*yuragi_recorder_written_total [1-9]')
+        labels = {name: {"job", "instance"} for name in re.findall(r"(?m)^# TYPE (\w+) ", text)}  # Prometheus's own
+        for name, of_value in re.findall(r"(?m)^(\w+)\{(.*)\} \S+$", text):
+            labels[name] |= set(re.findall(r'(\w+)="', of_value))
+        without_value = {"yuragi_sensor_refused_total": {"reason"}, "yuragi_sensor_quantity_missing": {"quantity"},
+                         "yuragi_faults_total": {"kind"}, "yuragi_sensor_gust_meters_per_second": set()}
+        for name, more in without_value.items():
+            labels[name] |= more | ({"sensor", "driver"} if "_sensor_" in name else set())
+
+        shown = set()
+        for panel in DASHBOARD["panels"]:
+            for target in panel.get("targets", []):
+                expression = target["expr"]
+                names = set(re.findall(r"\byuragi_\w+", expression))
+                self.assertTrue(names or "ALERTS" in expression, expression)
+                self.assertLessEqual(names, labels.keys(), panel["title"])
+                shown |= names
+                used = set(re.findall(r"{{(\w+)}}", target["legendFormat"]))
+                used |= set(re.findall(r"[{,]\s*(\w+)\s*[=!]", expression)) if names else set()
+                for name in names:
+                    self.assertLessEqual(used, labels[name], panel["title"])
+        self.assertEqual(labels.keys() - shown, set(), "each metric is shown")
+
+    def test_the_dashboard_is_one_that_grafana_imports(self):
+        self.assertGreaterEqual(DASHBOARD["schemaVersion"], 36, "Grafana 9")
+        self.assertNotIn("id", DASHBOARD)
+        panels = DASHBOARD["panels"]
+        self.assertEqual(len({panel["id"] for panel in panels}), len(panels))
+        taken = set()
+        for panel in panels:
+            place = panel["gridPos"]
+            self.assertLessEqual(place["x"] + place["w"], 24)
+            cells = {(x, y) for x in range(place["x"], place["x"] + place["w"]) for y in range(place["y"], place["y"] + place["h"])}
+            self.assertFalse(cells & taken, f'{panel["title"]} covers another panel')
+            taken |= cells
+            for target in panel.get("targets", []):
+                self.assertEqual(target["datasource"], {"type": "prometheus", "uid": "${datasource}"})
+                self.assertEqual(target["expr"].count("("), target["expr"].count(")"))
+                self.assertEqual(target["expr"].count("{"), target["expr"].count("}"))
+        variables = {variable["name"] for variable in DASHBOARD["templating"]["list"]}
+        used = set(re.findall(r"\$\{?(\w+)", json.dumps(DASHBOARD))) - {"__all", "__rate_interval"}
+        self.assertEqual(used, variables)
 
     @unittest.skipUnless(shutil.which("promtool"), "promtool (Debian: prometheus) is not installed")
     def test_promtool_has_nothing_against_the_metrics(self):

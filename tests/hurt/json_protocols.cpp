@@ -6,6 +6,7 @@
 #include "drivers/decode/davis/weatherlink_live.hpp"
 #include "drivers/decode/marine/canboat.hpp"
 #include "drivers/decode/marine/signalk.hpp"
+#include "drivers/decode/network/json_wind.hpp"
 #include "drivers/decode/network/tempest.hpp"
 #include "drivers/decode/text/line.hpp"
 #include "drivers/mqtt/mqtt_payload.hpp"
@@ -119,6 +120,12 @@ JsonWinds json_line_winds(std::string_view bytes) {
   return wind ? JsonWinds{*wind} : JsonWinds();
 }
 
+JsonWinds json_answer_winds(std::string_view bytes) {
+  const auto answer = drivers::decode::network::decode_json_wind(
+      bytes, {.speed = "/wind/speed", .direction = "/wind/direction", .gust = "/wind/gust"});
+  return answer ? JsonWinds{answer->wind} : JsonWinds();
+}
+
 /// The number there, as the MQTT driver takes it: none where it cannot be read.
 std::optional<double> mqtt_number(const drivers::mqtt::Payload& payload, const std::string& pointer) {
   const auto number = payload.number_at(pointer);
@@ -167,6 +174,10 @@ constexpr std::array kJsonProtocols = {
     Protocol{.name = "Signal K", .most_false_of_a_million = 32'000, .make = make_signalk, .winds_in = signalk_winds_in},
     Protocol{
         .name = "line, JSON", .most_false_of_a_million = 73'000, .make = make_json_line, .winds_in = json_line_winds},
+    Protocol{.name = "JSON by HTTP",
+             .most_false_of_a_million = 73'000,
+             .make = make_json_line,
+             .winds_in = json_answer_winds},
     Protocol{
         .name = "MQTT, JSON", .most_false_of_a_million = 49'000, .make = make_mqtt_json, .winds_in = mqtt_json_winds},
     Protocol{.name = "MQTT, a number",

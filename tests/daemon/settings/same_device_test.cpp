@@ -105,6 +105,12 @@ const std::vector<SensorPair>& sensor_pairs() {
       {"EcowittGateway", "ecowitt", "host = 'gw'", "host = 'gw'", "read gateway gw:45000: "},
       {"TwoEcowittGateways", "ecowitt", "host = '192.168.1.30'", "host = '192.168.1.31'", ""},
 
+      {"JsonUrl", "json", "url = 'http://a/b?c=d'\nspeed = '/s'", "url = 'http://a:80/b?c=d'\nspeed = '/s'",
+       "read server a:80 (url: #"},
+      {"JsonQueriesOfOneServer", "json", "url = 'http://a/b?c=1'\nspeed = '/s'", "url = 'http://a/b?c=2'\nspeed = '/s'",
+       ""},
+      {"JsonValuesOfOneAnswer", "json", "url = 'http://a/b'\nspeed = '/s'", "url = 'http://a/b'\nspeed = '/t'", ""},
+
       {"EcowittPushPort", "ecowitt-push", "", "path = '/b'", "read pushes to TCP port 8090: "},
       {"EcowittPushPorts", "ecowitt-push", "", "port = 8091", ""},
 

@@ -140,6 +140,15 @@ TEST(SimulationPlan, PlaysWhatIsAskedInTheNetwork) {
                                              "--direction", "225", "--turbulence", "0"));
   EXPECT_EQ(ecowitt.sensor.values.text("host"), "127.0.0.1");
 
+  const SimulationPlan json = plan_of_entry(
+      "driver = \"json\"\nurl = \"https://lan/?key=hunter2\"\nspeed = \"/a/0/v\"\ntime = \"/t\"\nspeed_unit = \"kn\"");
+  EXPECT_THAT(json.arguments,
+              ElementsAre("json", "--tcp", "127.0.0.1:0", "--interval", "1", "--unit", "kn", "--speed-at", "/a/0/v",
+                          "--time-at", "/t", "--speed", "8", "--direction", "225", "--turbulence", "0"));
+  EXPECT_EQ(at_port(json, 4321).values.secret("url"), Secret("http://127.0.0.1/wind.json"));
+  EXPECT_THAT(why_not("driver = \"json\"\nurl = \"http://lan\"\nspeed = \"/a\"\ngust = \"/a/b\""),
+              HasSubstr("each of speed, direction, gust and time at a place of its own"));
+
   const SimulationPlan live = plan_of_entry("driver = \"weatherlink\"\nhost = \"192.168.1.40\"\ntransmitter = 3");
   EXPECT_THAT(live.arguments,
               ElementsAre("weatherlink-live", "--tcp", "127.0.0.1:0", "--udp", "127.0.0.1:22222", "--interval", "1",

@@ -54,6 +54,8 @@ TEST(NamedDevices, AreWhatTheConfigurationSays) {
               ElementsAre(Named(EndpointKind::kBroker, "lan:8883")));
   EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(EndpointKind::kUdpPort, ":50222")));
   EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(EndpointKind::kServer, "gw:45000")));
+  EXPECT_THAT(names_in("driver = \"json\"\nurl = \"https://lan/a?key=b\"\nspeed = \"/a\""),
+              ElementsAre(Named(EndpointKind::kServer, "lan:443")));
   EXPECT_THAT(names_in("driver = \"ecowitt-push\""), ElementsAre(Named(EndpointKind::kTcpPort, "127.0.0.1:8090")));
   EXPECT_THAT(names_in("driver = \"davis\"\ndevice = \"/dev/ttyUSB0\""),
               ElementsAre(Named(EndpointKind::kSerialPort, "/dev/ttyUSB0")));
