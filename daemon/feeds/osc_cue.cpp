@@ -51,7 +51,7 @@ bool CueTrigger::is_due(const values::Moment& moment, values::Wind wind) {
     return false;
   }
   if (!held_since_s_) held_since_s_ = now_s;
-  if (is_sent_ || (!is_gust && now_s - *held_since_s_ < cue_.after_s)) return false;
+  if (is_sent_ || (!is_gust && now_s - *held_since_s_ < cue_.holds_for_s())) return false;
   if (sent_s_ && now_s - *sent_s_ < cue_.again_after_s) return false;
   is_sent_ = true;
   sent_s_ = now_s;

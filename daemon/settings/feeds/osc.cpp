@@ -166,7 +166,8 @@ const Fields<OscCue>& osc_cue_fields() {
         .default_value = 0.0,
         .min = 0.0,
         .max = kDay_s,
-        .help = "how long the condition has to hold; for all but gust"},
+        .help = "how long the condition has to hold; for all but gust",
+        .left_out = "0 s; for sensor_silent 5 s"},
        &OscCue::after_s},
       {{.name = "sensor",
         .default_value = std::string(),
@@ -208,6 +209,11 @@ Result<Span, Failure> span_of(std::string_view text) {
 
 double OscCue::limit_m_s() const {
   return speed_m_s.value_or(when == OscCondition::kCalm ? kUsualCalm_m_s : kUsualAbove_m_s);
+}
+
+double OscCue::holds_for_s() const {
+  constexpr double kUsualSilence_s = 5.0;
+  return after_s.value_or(when == OscCondition::kSensorSilent ? kUsualSilence_s : 0.0);
 }
 
 bool Osc::sends(std::string_view part) const {

@@ -48,13 +48,14 @@ struct OscCue {
   OscCondition when = OscCondition::kGust;
   double rise_m_s = 3.0;
   std::optional<double> speed_m_s;  ///< of kWindAbove and kCalm; nullopt: the usual one
-  double after_s = 0.0;
+  std::optional<double> after_s;    ///< how long the condition has to hold; nullopt: the usual time
   std::string sensor;
   double again_after_s = 20.0;
   std::string address;
   friend bool operator==(const OscCue&, const OscCue&) = default;
 
   double limit_m_s() const;
+  double holds_for_s() const;
 };
 
 /// An [[osc]]: whom to send what.

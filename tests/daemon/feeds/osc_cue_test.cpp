@@ -71,6 +71,8 @@ TEST(CueTriggerTest, ASensorIsSilent) {
   const auto steady = [](double) { return 5.0; };
   const auto is_live = [](double time_s) { return time_s < 10.0; };
   EXPECT_THAT(sent_during(silent, 30.0, steady, is_live), ElementsAre(testing::DoubleNear(11.0, 0.11)));
+  const OscCue patient{.when = OscCondition::kSensorSilent, .sensor = "roof"};
+  EXPECT_THAT(sent_during(patient, 30.0, steady, is_live), ElementsAre(testing::DoubleNear(15.0, 0.11)));
   const OscCue another{.when = OscCondition::kSensorSilent, .sensor = "cellar"};
   EXPECT_THAT(sent_during(another, 30.0, steady, is_live), IsEmpty());
 }
