@@ -81,6 +81,19 @@ wire::RecorderStatus to_wire(const recording::RecorderStatus& status) {
           .recorded_elsewhere = status.recorded_elsewhere};
 }
 
+wire::FeedStatus to_wire(const feeds::Status& feed, MonoTime now) {
+  wire::FeedStatus status{.kind = feed.kind,
+                          .name = feed.name,
+                          .target = feed.target,
+                          .sends = feed.sends,
+                          .messages = feed.messages,
+                          .bytes = feed.bytes,
+                          .last_sent_age_s = {},
+                          .trouble = feed.trouble};
+  if (feed.last_sent) status.last_sent_age_s = std::max(0.0, seconds(now - *feed.last_sent));
+  return status;
+}
+
 std::vector<look::Camera> cameras_of(const settings::Config& config) {
   std::vector<look::Camera> cameras;
   for (const settings::CameraConfig& camera : config.cameras) cameras.push_back(camera.camera);
@@ -615,6 +628,7 @@ class Service::Io {
     }
     if (recorder_) status.recorder = to_wire(recorder_->status());
     status.troubles = troubles();
+    for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
     if (stream_.has_untrusted_clients() || (web_ && web_->has_untrusted_clients())) {

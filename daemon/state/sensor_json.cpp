@@ -124,6 +124,21 @@ ordered_json json_of_animation(const std::optional<wire::AnimationStatus>& anima
           {"scenes", scenes}};
 }
 
+ordered_json json_of_feeds(const std::vector<wire::FeedStatus>& feeds) {
+  ordered_json all = ordered_json::array();
+  for (const wire::FeedStatus& feed : feeds) {
+    all.push_back({{"kind", feed.kind},
+                   {"name", feed.name},
+                   {"target", feed.target},
+                   {"sends", feed.sends},
+                   {"messages", feed.messages},
+                   {"bytes", feed.bytes},
+                   {"last_sent_age_s", json_or_null(feed.last_sent_age_s)},
+                   {"trouble", feed.trouble}});
+  }
+  return all;
+}
+
 }  // namespace
 
 ordered_json sensors_json(const wire::Sensors& sensors) {
@@ -145,7 +160,8 @@ ordered_json sensors_json(const wire::Sensors& sensors) {
           {"recent_skipped_ticks", sensors.recent_skipped_ticks},
           {"io_lateness", json_of_lateness(sensors.io_lateness)},
           {"tick_lateness", json_of_lateness(sensors.tick_lateness)},
-          {"animation", json_of_animation(sensors.animation)}};
+          {"animation", json_of_animation(sensors.animation)},
+          {"feeds", json_of_feeds(sensors.feeds)}};
 }
 
 ordered_json raw_trace_json(const wire::RawTrace& trace) {

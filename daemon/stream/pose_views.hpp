@@ -12,7 +12,8 @@
 namespace yuragi::daemon::stream {
 
 /// The newest scenes and frame as clients of one Thinning get them. A frame is thinned out when the first of them needs
-/// it, once for all of them. Thread-safe: no.
+/// it, once for all of them. A flag of 30,000 joints is 86 Mbit/s in full, and 0.8 with every 8th column and row at
+/// 30 Hz. Thread-safe: no.
 class PoseView {
  public:
   explicit PoseView(wire::Thinning thinning) : thinning_(std::move(thinning)) {}

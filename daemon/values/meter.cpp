@@ -34,7 +34,8 @@ void Meter::add(wind::Vector wind, double live, double age_s, double dt_s, const
   speeds_[second_ % kMean_s].add(speed_m_s, step_s);
   squares_[second_ % kGusts_s].add((speed_m_s - before_m_s) * (speed_m_s - before_m_s), step_s);
   add_to_peak(speed_m_s, step_s);
-  if (speeds_[second_ % kMean_s].time_s >= 1.0) turn_second();
+  since_second_s_ += step_s;
+  for (; since_second_s_ >= 1.0; since_second_s_ -= 1.0) turn_second();
 
   const double mean = mean_m_s();
   const double gust_m_s = speed_m_s - mean;
@@ -54,13 +55,16 @@ void Meter::add(wind::Vector wind, double live, double age_s, double dt_s, const
 
 void Meter::add_to_peak(double speed_m_s, double dt_s) noexcept {
   parts_[part_].add(speed_m_s, dt_s);
-  if (parts_[part_].time_s < kPart_s) return;
+  since_part_s_ += dt_s;
+  if (since_part_s_ < kPart_s) return;
   Sum together;
   for (const Sum& part : parts_) together.add(part.mean(), part.time_s);
   double& strongest = strongest_m_s_[second_ % kGusts_s];
   strongest = std::max(strongest, together.mean());
-  part_ = (part_ + 1) % kPeakParts;
-  parts_[part_] = {};
+  for (; since_part_s_ >= kPart_s; since_part_s_ -= kPart_s) {
+    part_ = (part_ + 1) % kPeakParts;
+    parts_[part_] = {};
+  }
 }
 
 void Meter::turn_second() noexcept {

@@ -46,14 +46,15 @@ class Meter {
   double mean_m_s() const noexcept;
   double gust_deviation_m_s(double mean_m_s) const noexcept;
 
-  std::array<Sum, kMean_s> speeds_{};             ///< of the last seconds
-  std::array<Sum, kGusts_s> squares_{};           ///< of the gust
-  std::array<double, kGusts_s> strongest_m_s_{};  ///< 3 s that ended in each of the last seconds
-  std::array<Sum, kPeakParts> parts_{};           ///< quarters of a second
-  std::size_t part_ = 0;                          ///< that is being filled
-  std::size_t second_ = 0;                        ///< since the beginning
-  Sum all_speeds_, all_squares_;                  ///< of the seconds that are over and not yet forgotten
-  double peak_m_s_ = 0.0;                         ///< of the seconds that are over
+  std::array<Sum, kMean_s> speeds_{};                 ///< of the last seconds
+  std::array<Sum, kGusts_s> squares_{};               ///< of the gust
+  std::array<double, kGusts_s> strongest_m_s_{};      ///< 3 s that ended in each of the last seconds
+  std::array<Sum, kPeakParts> parts_{};               ///< quarters of a second
+  std::size_t part_ = 0;                              ///< that is being filled
+  std::size_t second_ = 0;                            ///< since the beginning
+  double since_part_s_ = 0.0, since_second_s_ = 0.0;  ///< what the present ones have lasted
+  Sum all_speeds_, all_squares_;                      ///< of the seconds that are over and not yet forgotten
+  double peak_m_s_ = 0.0;                             ///< of the seconds that are over
   Readout readout_;
 };
 

@@ -122,6 +122,20 @@ void add_animation(std::vector<MetricFamily>& all, const wire::AnimationStatus& 
   all.push_back(scenes.take());
 }
 
+void add_feeds(std::vector<MetricFamily>& all, const std::vector<wire::FeedStatus>& feeds) {
+  if (feeds.empty()) return;
+  Family sending = gauge("yuragi_feed_sending", "1 if a feed to other programs can send");
+  Family messages = counter("yuragi_feed_messages_total", "Messages that a feed has sent");
+  Family bytes = counter("yuragi_feed_bytes_total", "Bytes that a feed has sent");
+  for (const wire::FeedStatus& feed : feeds) {
+    const Labels labels = {{"kind", feed.kind}, {"name", feed.name}};
+    sending.add(feed.trouble.empty() ? 1.0 : 0.0, labels);
+    messages.add(feed.messages, labels);
+    bytes.add(feed.bytes, labels);
+  }
+  for (Family* const family : {&sending, &messages, &bytes}) all.push_back(family->take());
+}
+
 void add_clients(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
   all.push_back(gauge("yuragi_stream_clients", "Clients of the stream now").add(std::uint64_t{sensors.clients}).take());
   all.push_back(counter("yuragi_stream_clients_turned_away_total", "Clients that were refused or let go, by reason")
@@ -174,6 +188,7 @@ std::string metrics_text(const wire::Sensors& sensors, const std::string& softwa
   add_lateness(all, sensors);
   if (sensors.animation) add_animation(all, *sensors.animation);
   add_clients(all, sensors);
+  add_feeds(all, sensors.feeds);
   add_web(all, counts);
   add_faults(all, faults);
   if (sensors.recorder) add_recorder(all, *sensors.recorder);

@@ -11,7 +11,10 @@
 //
 // Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
 // number, or missing, is an unknown value.
+#include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -86,6 +89,17 @@ const Fields<Settings> kOscFields = {
               "which must be longer than the longest calm"},
      &Settings::reports_on_change},
 };
+
+/// Returns true if a daemon of this project sends this beside its wind ([[osc]] of the configuration): such messages
+/// are no mistake of the sender. `wind`: the address of the wind, "/wind" behind any prefix.
+bool is_of_a_daemon(std::string_view address, std::string_view wind) {
+  constexpr std::string_view kWind = "/wind";
+  if (!wind.ends_with(kWind)) return false;
+  const std::string_view prefix = wind.substr(0, wind.size() - kWind.size());
+  if (!address.starts_with(prefix)) return false;
+  return std::ranges::any_of(std::array{"/wind/", "/sensor/", "/place/", "/scene/"},
+                             [&](std::string_view part) { return address.substr(prefix.size()).starts_with(part); });
+}
 
 std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t which) {
   const bool is_there = which >= 0 && which < std::ssize(message.numbers);
@@ -176,7 +190,10 @@ class Sensor final : public sensor::ReopeningSensor {
   }
 
   void take(const bus::OscMessage& message, Instant now, sensor::Sink& sink) {
-    if (!bus::osc_address_matches(message.address, settings_.address)) return sink.refused(decode::Refusal::kNotMine);
+    if (!bus::osc_address_matches(message.address, settings_.address)) {
+      if (!is_of_a_daemon(message.address, settings_.address)) sink.refused(decode::Refusal::kNotMine);
+      return;
+    }
     if (message.meant_for && *message.meant_for - now.utc > kFarthestAhead) return refuse_future(message, now, sink);
     const auto wind = wind_of(message, settings_);
     if (!wind) return sink.refused(wind.error());

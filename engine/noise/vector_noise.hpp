@@ -25,7 +25,7 @@ struct VectorTile2 {
 /// cut through such turbulence has the integral of E(K) (K^2 d_ij - K_i K_j) / (4 pi K^4) over the vertical wavenumber,
 /// for von Karman's energy E ~ K^4 / (K^2 + kappa^2)^(17/6): 3/8 (k^2 + kappa^2)^(-4/3) d_ij + (k^2 d_ij - k_i k_j)
 /// (k^2 + kappa^2)^(-7/3), the two terms of the sum above (engine/METHOD.md M7). A component is more correlated along
-/// its own direction than across it, as in W12 and W13 of engine/wind/README.md, in every direction of the wind.
+/// its own direction than across it, as in W12 and W13 of engine/wind/model.md, in every direction of the wind.
 ///
 /// Its eddies turn over, all at one rate, without a transform at run time: the field cos(a) first + sin(a) quarter is
 /// `first` with the phase of each mode turned by s_k a. The sign s_k is random, and s_-k = -s_k, so that the field does

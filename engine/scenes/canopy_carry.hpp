@@ -9,7 +9,7 @@ namespace yuragi::scenes {
 ///
 /// They run at 1.8 times the wind at the tops of the plants, and that is 3.3 u*; the logarithmic profile above a stand
 /// of height h begins at d = 0.67 h with the roughness 0.1 h (Raupach, Finnigan and Brunet 1996, "Coherent eddies and
-/// turbulence in vegetation canopies: the mixing-layer analogy"). So with W8 of engine/wind/README.md
+/// turbulence in vegetation canopies: the mixing-layer analogy"). So with W8 of engine/wind/model.md
 ///
 ///   carry = 1.8 * 3.3 u* / U(10 m) = 1.8 * 3.3 * 0.41 / ln((10 m - 0.67 h) / (0.1 h))
 ///

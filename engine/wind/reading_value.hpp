@@ -31,7 +31,7 @@ struct TakenValue {
 /// Returns the assumed value of a station whose value is unknown, by the interval between its readings: the assumption
 /// with the smaller maximum error. Means treated as instantaneous give a fraction of the variance, instantaneous wind
 /// treated as means a multiple of it: for four winds at worst 1/2.3 and 2.7 times at 14 s, 1/4.0 and 4.1 at 30 s, 1/7.1
-/// and 4.9 at 60 s (engine/wind/README.md, "Instantaneous stations", and sampling_proof). Pure.
+/// and 4.9 at 60 s (engine/wind/model.md, "Instantaneous stations", and sampling_proof). Pure.
 inline constexpr double kAssumedInstantUpTo_s = 30.0;
 constexpr ReadingValue assumed_value(double interval_s) noexcept {
   return interval_s > kAssumedInstantUpTo_s ? ReadingValue::kMean : ReadingValue::kInstant;

@@ -223,6 +223,17 @@ bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
   return read_text(from->error(), to->error) && read_text(from->clock_doubt(), to->clock_doubt);
 }
 
+bool read(const fb::Feed& from, FeedStatus& to) {
+  to.messages = from.messages();
+  to.bytes = from.bytes();
+  if (const auto age_s = from.last_sent_age_s()) {
+    if (!is_within(*age_s, 0.0, kMaxDuration_s)) return false;
+    to.last_sent_age_s = *age_s;
+  }
+  return read_text(from.kind(), to.kind) && read_text(from.name(), to.name) && read_text(from.target(), to.target) &&
+         read_text(from.sends(), to.sends) && read_text(from.trouble(), to.trouble);
+}
+
 /// Never refuses: values are limited to their range, so that a picture is shown.
 void read(const fb::Look* from, look::Look& to) {
   if (from == nullptr) return;
@@ -297,6 +308,11 @@ bool read(const fb::Sensors& from, Sensors& to) {
   for (std::size_t i = 0; i < troubles; ++i) {
     if (!read_text(from.troubles()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.troubles.emplace_back()))
       return false;
+  }
+  const std::size_t feeds = from.feeds() == nullptr ? 0 : from.feeds()->size();
+  if (feeds > kMaxFeeds) return false;
+  for (std::size_t i = 0; i < feeds; ++i) {
+    if (!read(*from.feeds()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.feeds.emplace_back())) return false;
   }
   const auto is_reach = [](const std::optional<double>& reach) {
     return !reach || is_within(*reach, 1.0 / kMaxTimes, kMaxTimes);

@@ -225,6 +225,24 @@ flatbuffers::Offset<fb::Look> add_look(Builder& builder, const look::Look& look)
   return table.Finish();
 }
 
+flatbuffers::Offset<fb::Feed> add_feed(Builder& builder, const FeedStatus& feed) {
+  const auto kind = add_text(builder, feed.kind);
+  const auto name = add_text(builder, feed.name);
+  const auto target = add_text(builder, feed.target);
+  const auto sends = add_text(builder, feed.sends);
+  const auto trouble = add_text(builder, feed.trouble);
+  fb::FeedBuilder table(builder);
+  table.add_kind(kind);
+  table.add_name(name);
+  table.add_target(target);
+  table.add_sends(sends);
+  table.add_messages(feed.messages);
+  table.add_bytes(feed.bytes);
+  if (feed.last_sent_age_s) table.add_last_sent_age_s(*feed.last_sent_age_s);
+  table.add_trouble(trouble);
+  return table.Finish();
+}
+
 flatbuffers::Offset<fb::Camera> add_camera(Builder& builder, const look::Camera& camera) {
   const auto name = add_text(builder, camera.name);
   const auto scene = add_text(builder, camera.scene);
@@ -401,6 +419,10 @@ Bytes encode(const Sensors& sensors) {
   for (std::size_t i = 0; i < std::min(sensors.troubles.size(), kMaxTroubles); ++i)
     troubles.push_back(add_text(builder, sensors.troubles[i]));
   const auto trouble_list = builder.CreateVector(troubles);
+  std::vector<flatbuffers::Offset<fb::Feed>> feeds;
+  for (std::size_t i = 0; i < std::min(sensors.feeds.size(), kMaxFeeds); ++i)
+    feeds.push_back(add_feed(builder, sensors.feeds[i]));
+  const auto feed_list = builder.CreateVector(feeds);
   fb::SensorsBuilder table(builder);
   table.add_sensors(vector);
   table.add_wind(&wind);
@@ -422,6 +444,7 @@ Bytes encode(const Sensors& sensors) {
   table.add_recent_ticks(sensors.recent_ticks);
   table.add_recent_skipped_ticks(sensors.recent_skipped_ticks);
   table.add_troubles(trouble_list);
+  table.add_feeds(feed_list);
   table.add_given_up(sensors.given_up);
   if (sensors.gust_reach_across) table.add_gust_reach_across(*sensors.gust_reach_across);
   if (sensors.gust_reach_along) table.add_gust_reach_along(*sensors.gust_reach_along);

@@ -52,6 +52,7 @@ inline constexpr double kMaxRate_hz = 1000.0;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
 inline constexpr std::size_t kMaxQuantities = 16;  ///< of a sensor
 inline constexpr std::size_t kMaxTroubles = 16;
+inline constexpr std::size_t kMaxFeeds = 64;
 inline constexpr double kMaxFade_s = 3600.0;
 inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a ReloadReport; encoders omit further ones
 inline constexpr std::uint32_t kMaxSteps = 1'000'000;
@@ -217,6 +218,17 @@ struct AnimationStatus {
   std::vector<SceneCost> scenes = {};
 };
 
+/// An output of the wind for other programs.
+struct FeedStatus {
+  std::string kind;    ///< "osc"
+  std::string name;    ///< as the configuration calls it
+  std::string target;  ///< "192.168.1.40:9000"
+  std::string sends;   ///< for a person
+  std::uint64_t messages = 0, bytes = 0;
+  std::optional<double> last_sent_age_s = std::nullopt;  ///< nullopt: nothing has been sent
+  std::string trouble = {};  ///< why nothing can be sent at present, and what to do; empty: it can
+};
+
 struct Sensors {
   std::vector<SensorStatus> sensors;
   wind::State wind;              ///< the real one; that of the frames is shaped
@@ -240,6 +252,7 @@ struct Sensors {
   std::uint8_t given_up = 0;               ///< the most of all clients' Display
   /// Reach of gusts across the wind, and along it, relative to the usual; nullopt: unknown.
   std::optional<double> gust_reach_across = std::nullopt, gust_reach_along = std::nullopt;
+  std::vector<FeedStatus> feeds = {};  ///< at most kMaxFeeds
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

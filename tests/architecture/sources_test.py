@@ -133,7 +133,7 @@ class TheProject(unittest.TestCase):
     def test_names_files_that_are_there(self):
         """In the documents of sources each `file.cpp` is a file's name, or the end of its path."""
         paths = ["/" + path.relative_to(ROOT).as_posix() for folder in FOLDERS for path in (ROOT / folder).rglob("*.*")]
-        for document in ("engine/METHOD.md", "engine/wind/README.md", "drivers/SOURCES.md"):
+        for document in ("engine/METHOD.md", "engine/wind/model.md", "drivers/SOURCES.md"):
             named = set(re.findall(r"`([\w./-]+\.(?:hpp|cpp|toml))`", (ROOT / document).read_text(encoding="utf-8")))
             self.assertGreater(len(named), 10, document)
             missing = sorted(name for name in named if not any(path.endswith("/" + name) for path in paths))

@@ -1,5 +1,5 @@
 // The blended wind of stations that report instantaneous wind, or means, in winds of known spectrum and on real
-// recordings: engine/wind/README.md W39, W40.
+// recordings: engine/wind/model.md W39, W40.
 
 #include <algorithm>
 #include <array>

@@ -19,7 +19,7 @@ struct SonicRecord {
   double duration_s() const { return static_cast<double>(samples.size()) / rate_hz; }
 };
 
-/// The two recordings of Finse (engine/wind/README.md), by their number 0 or 1 (20 July 2018, 13:30 and 14:00, Finse;
+/// The two recordings of Finse (engine/wind/model.md), by their number 0 or 1 (20 July 2018, 13:30 and 14:00, Finse;
 /// CSAT3, 10 Hz). Empty where the folder is not there. Throws std::runtime_error for a file that cannot be read.
 std::optional<SonicRecord> load_sonic(int number);
 
@@ -36,7 +36,7 @@ std::vector<wind::Reading> block_means(const SonicRecord& record, double interva
 /// The readings of an instantaneous station: the last sample of each block, at its end.
 std::vector<wind::Reading> instant_samples(const SonicRecord& record, double interval_s);
 
-/// A made-up wind of known spectrum, along east: von Karman's along and across it (engine/wind/README.md W5), the
+/// A made-up wind of known spectrum, along east: von Karman's along and across it (engine/wind/model.md W5), the
 /// latter with 0.8 of the deviation; 54 minutes, ten samples a second.
 SonicRecord von_karman_record(double speed_m_s, double intensity, double length_m, std::uint64_t seed);
 

@@ -73,7 +73,7 @@ struct DirectionPoint {
 
 inline constexpr std::size_t kRoseSectors = kCompassPoints.size();
 inline constexpr std::size_t kRoseClasses = 6;
-/// Below this it is calm (engine/wind/README.md W37).
+/// Below this it is calm (engine/wind/model.md W37).
 inline constexpr double kRoseCalm_m_s = 0.5;
 
 /// Where the wind came from: shares of the readings with a direction.

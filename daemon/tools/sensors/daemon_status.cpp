@@ -11,6 +11,7 @@
 #include "daemon/state/sensor_json.hpp"
 #include "daemon/tools/sensors/player_text.hpp"
 #include "daemon/tools/sensors/sensor_table.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::tools::sensors {
 namespace {
@@ -22,6 +23,15 @@ std::string cost_text(const wire::SceneState& scene, const std::optional<wire::A
   if (cost == animation->scenes.end()) return {};
   return fmt::format(", {:.2f} ms a tick, {:.0f} % of the animation's work", 1e3 * cost->tick_s,
                      1e2 * state::share_of(*cost, *animation));
+}
+
+/// "feed wall (osc) to 192.168.1.40:9000: wind, sensors; 360 messages, the last 0.0 s ago".
+std::string feed_text(const wire::FeedStatus& feed) {
+  std::string text = fmt::format("feed {} ({}) to {}: {}; {}", feed.name, feed.kind, feed.target, feed.sends,
+                                 count_text(feed.messages, "message"));
+  if (feed.last_sent_age_s) text += fmt::format(", the last {:.1f} s ago", *feed.last_sent_age_s);
+  if (!feed.trouble.empty()) text += "; CANNOT SEND: " + feed.trouble;
+  return text + '\n';
 }
 
 }  // namespace
@@ -39,6 +49,8 @@ std::string status_text(const DaemonStatus& status) {
   for (const wire::SceneState& scene : status.scenes)
     text += fmt::format("scene {} ({}): {}{}\n", scene.name, scene.kind, scene.shown ? "shown" : "hidden",
                         cost_text(scene, animation));
+  if (!status.sensors.feeds.empty()) text += '\n';
+  for (const wire::FeedStatus& feed : status.sensors.feeds) text += feed_text(feed);
   if (!status.players.empty()) text += '\n';
   for (const wire::PlayerState& player : status.players) text += "recording " + player_text(player);
   return text;

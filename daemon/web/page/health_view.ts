@@ -1,6 +1,6 @@
 // The health of the daemon itself.
 import { element, set_text } from "./element";
-import { Animation, GustReach, Lateness, Recorder, Status } from "./status";
+import { Animation, Feed, GustReach, Lateness, Recorder, Status } from "./status";
 import { bytes_text, milliseconds_text } from "./wording";
 
 const UNKNOWN = "–";
@@ -38,6 +38,15 @@ function reach_text(reach: GustReach): string {
   return shown.length === 0 ? UNKNOWN : `${shown.join(" and ")} as usually`;
 }
 
+/** As `yuragi status` shows it. */
+function feeds_text(feeds: Feed[]): string {
+  if (feeds.length === 0) return "nobody";
+  return feeds.map((feed) => {
+    const last = feed.last_sent_age_s === null ? "nothing sent yet" : `last ${feed.last_sent_age_s.toFixed(1)} s ago`;
+    return `${feed.name} (${feed.kind}) at ${feed.target}: ${feed.sends}; ${feed.trouble === "" ? last : `cannot send: ${feed.trouble}`}`;
+  }).join("; ");
+}
+
 const FACTS: [string, (status: Status) => string][] = [
   ["Ticks", (status) => `${status.tick_rate_hz} Hz, ${status.recent_skipped_ticks.toLocaleString("en")} skipped in 10 minutes`],
   ["Work of a tick", (status) => animation_text(status.animation)],
@@ -47,6 +56,7 @@ const FACTS: [string, (status: Status) => string][] = [
   ["Gusts are alike", (status) => reach_text(status.gust_reach)],
   ["Recorder", (status) => recorder_text(status.recorder)],
   ["Free on its disk", (status) => (status.recorder?.free_bytes == null ? UNKNOWN : bytes_text(status.recorder.free_bytes))],
+  ["Sends the wind to", (status) => feeds_text(status.feeds)],
   ["Viewers", (status) => `${status.clients.connected} connected`],
   ["Program", (status) => status.software],
 ];

@@ -60,6 +60,18 @@ export interface Recorder {
   clock_doubt: string;
 }
 
+/** An output of the wind for other programs. */
+export interface Feed {
+  kind: string;
+  name: string;
+  target: string;
+  sends: string;
+  messages: number;
+  bytes: number;
+  last_sent_age_s: number | null;
+  trouble: string;
+}
+
 export interface Status {
   verdict: "well" | "attention";
   attention: string[];
@@ -78,6 +90,7 @@ export interface Status {
   io_lateness: Lateness | null;
   tick_lateness: Lateness | null;
   animation: Animation | null;
+  feeds: Feed[];
 }
 
 export interface Scene {

@@ -114,7 +114,7 @@ void BlendedEstimator::share_out(double dt_s) noexcept {
 }
 
 /// The shares of the sources in a band, by weight times trust; their sum is the mean of the trusts, weighted in the
-/// same way, so that sources that do not resolve the band take nothing from one that does (engine/wind/README.md W23).
+/// same way, so that sources that do not resolve the band take nothing from one that does (engine/wind/model.md W23).
 /// Returns the sum of the shares.
 double BlendedEstimator::share_level(std::size_t level, std::span<const double> weights,
                                      std::span<double> shares) const noexcept {
@@ -428,7 +428,7 @@ double BlendedEstimator::variance_share(std::size_t index, const OpenPart& open,
   return kept + measured.weight * choice_.gusts(index) * open.given * std::min(strength * strength, 4.0);
 }
 
-/// The strength of each octave of the noise, and the part of it that the sensors measure (engine/wind/README.md W20).
+/// The strength of each octave of the noise, and the part of it that the sensors measure (engine/wind/model.md W20).
 /// The way's octaves are reduced by that part here; those of the tiles at each place.
 void BlendedEstimator::weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept {
   // A new fit, or a new interval of a sensor, is a step, which must not show.

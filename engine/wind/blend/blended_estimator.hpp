@@ -27,7 +27,7 @@ namespace yuragi::wind::blend {
 /// interval (where sensor and noise have the same power), 0 far above, less the longer it is silent. The noise has the
 /// rest *in power*, sqrt(1 - |a A|^2), A being the response of the sensor's own averaging and of the holding of its
 /// readings in that band, and the strength that von Karman's spectrum has there; its turbulence intensity and length
-/// are fitted to past readings, and return to the climate's if there are none (engine/wind/README.md W17 to W21). The
+/// are fitted to past readings, and return to the climate's if there are none (engine/wind/model.md W17 to W21). The
 /// noise is read from a pattern that the mean wind carries over the ground (GustNoise) at the sensor's place, along the
 /// wind and across it. A mean that is no longer measured fades into the climate's. All averages are of vectors; weights
 /// are slewed by critically damped filters, so that nothing jumps.

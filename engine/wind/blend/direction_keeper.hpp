@@ -10,7 +10,7 @@ namespace yuragi::wind::blend {
 /// The direction of a source's wind, as a unit vector: that of its vane, held in a calm and smoothed if it is coarse.
 ///
 /// A reading without a direction keeps the last one, or uses a given one. In a calm (below 0.5 m/s) a vane is
-/// unreliable: the direction is held, more strongly the calmer it is (engine/wind/README.md W37). A vane of 8 or 16
+/// unreliable: the direction is held, more strongly the calmer it is (engine/wind/model.md W37). A vane of 8 or 16
 /// points jumps: its directions are low-passed at the frequency above which its quantisation noise is stronger than the
 /// turbulence (W31). All turns are by the shorter angle. Thread-safe: no. Realtime-safe: yes.
 class DirectionKeeper {

@@ -5,7 +5,7 @@
 
 namespace yuragi::wind::blend {
 
-/// How often a source reports something new, from the gaps between its readings (engine/wind/README.md W38).
+/// How often a source reports something new, from the gaps between its readings (engine/wind/model.md W38).
 ///
 /// For a station that sends regularly it is the median of its last nine gaps. That would be too short for a station
 /// that sends in bursts (it repeats each message, or sends several at once, or alternates between two rates): for these

@@ -33,7 +33,7 @@ constexpr double kOwnLengthWeight = 5.0;
 constexpr double kOwnLengthIntensityWeight = 1.0;
 
 /// The weight of a band of a source with this interval, or averaging time, while its readings are on time
-/// (engine/wind/README.md W18).
+/// (engine/wind/model.md W18).
 double full_trust_at(double frequency_hz, double interval_s) noexcept {
   const double ratio = frequency_hz * interval_s / kHalfTrustTimesInterval;
   return 1.0 / (1.0 + ratio * ratio * ratio * ratio);

@@ -31,7 +31,7 @@ struct SourceResponse {
 /// The prior of a source's turbulence, before it has sent readings. Pure.
 turbulence::Prior turbulence_prior(const Settings& blend, const SourceSettings& settings) noexcept;
 
-/// One source of a blend: its readings split into octave bands (engine/wind/README.md W17), the weight of each band
+/// One source of a blend: its readings split into octave bands (engine/wind/model.md W17), the weight of each band
 /// (W18, W21), and the turbulence fitted to its readings (W28, W29). Thread-safe: no. Realtime-safe after construction:
 /// yes.
 class SourceEstimator {
@@ -128,7 +128,7 @@ class SourceEstimator {
 };
 
 /// The group delay of the blend, s: the delay of the blend behind the wind at this frequency, for a source that sends a
-/// reading every `interval_s`, each the mean over `averaging_s`. Pure. Source: engine/wind/README.md W22.
+/// reading every `interval_s`, each the mean over `averaging_s`. Pure. Source: engine/wind/model.md W22.
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept;
 
 }  // namespace yuragi::wind::blend

@@ -29,7 +29,7 @@ struct WindSlope {
 };
 
 /// The wind over the ground at one moment: the measured wind at the places to which it has been carried, and the noise
-/// that fills the rest (engine/wind/README.md W26). Finite. Refers to the tapes of the measured wind; without them
+/// that fills the rest (engine/wind/model.md W26). Finite. Refers to the tapes of the measured wind; without them
 /// (nothing is measured, or a test) all places have the same wind except for their own gusts. Thread-safe and
 /// realtime-safe: reading, yes.
 struct Wind {

@@ -9,7 +9,7 @@
 
 namespace yuragi::wind::ground {
 
-/// The part of a gust measured at one place that is still known at another (engine/wind/README.md W24): the root
+/// The part of a gust measured at one place that is still known at another (engine/wind/model.md W24): the root
 /// coherence
 ///
 ///     g = exp(-distance q kappa(f)),  kappa(f) = sqrt(k^2 + 1 / (1.339 L)^2),  k = 2 pi f / U,

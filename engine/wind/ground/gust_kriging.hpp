@@ -11,7 +11,7 @@
 namespace yuragi::wind::ground {
 
 /// The gusts at a place by sensors at several others: simple kriging, one octave at a time (Krige 1951; Chiles and
-/// Delfiner 2012, Geostatistics, 3.2; engine/wind/README.md W27). The weights of the sensors are
+/// Delfiner 2012, Geostatistics, 3.2; engine/wind/model.md W27). The weights of the sensors are
 ///
 ///     w = (C + N)^-1 c,
 ///

@@ -11,7 +11,7 @@ namespace yuragi::wind::ground {
 /// The wind that was measured at one place, along the way that it has travelled since: a ring of samples, one per
 /// kStep_m of the way. The pen writes at the sensor's place, the mean wind moves the tape, and a place D downwind reads
 /// the sample that was written when the way was D shorter: the propagation operator, "read at the place minus the
-/// shift" (Chiba, section 2-2), for a measured signal (engine/wind/README.md W25).
+/// shift" (Chiba, section 2-2), for a measured signal (engine/wind/model.md W25).
 ///
 /// A tick writes as many samples as the way has advanced, linear between this tick's and the last one's. The first
 /// fills the tape with the mean, without gusts. Owns its samples (0.4 MB). Thread-safe: no. Realtime-safe: all but

@@ -14,7 +14,7 @@
 namespace yuragi::wind::ground {
 
 /// The measured wind and its present place: the tapes of all places with a sensor, and the part of their content that
-/// is still valid at any place over the ground (engine/wind/README.md W24 to W27).
+/// is still valid at any place over the ground (engine/wind/model.md W24 to W27).
 ///
 /// At a place x, a way D = (x - pen) . ahead downwind of the pen, the tape is read at D of the way ago. The air of that
 /// moment is now at P = its pen + its displacement since, and the place is |x - P| away from it: across the wind in a

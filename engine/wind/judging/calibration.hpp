@@ -15,7 +15,7 @@ struct CalibrationPoint {
 };
 
 /// From a sensor's reading to the wind at the scene's height: speed * unit * gain + offset, then the curve, then the
-/// change of the wind with height; direction + north offset (engine/wind/README.md W32). The default changes nothing.
+/// change of the wind with height; direction + north offset (engine/wind/model.md W32). The default changes nothing.
 ///
 /// A reading of 0 stays 0: a cup that stands still does not reveal its offset. The gust is converted like the speed.
 /// Thread-safe: yes. Realtime-safe: applied_to() is.

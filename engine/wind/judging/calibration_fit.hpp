@@ -10,7 +10,7 @@
 namespace yuragi::wind::judging {
 
 // Fits a calibration: from a sensor's readings beside a reference to gain, offset, curve and north offset
-// (engine/wind/README.md W34). The sensor's speeds are in m/s: its unit is applied, nothing else of its calibration.
+// (engine/wind/model.md W34). The sensor's speeds are in m/s: its unit is applied, nothing else of its calibration.
 // Each function refuses data that would make a calibration worse than none; the failure's text states what to do. All
 // are pure; thread-safe: yes; realtime-safe: no.
 

@@ -14,7 +14,7 @@
 
 namespace yuragi::wind::turbulence {
 
-/// GustNoise::Moment::fronts that gives the noise the skewness of turbulence (engine/wind/README.md W42).
+/// GustNoise::Moment::fronts that gives the noise the skewness of turbulence (engine/wind/model.md W42).
 inline constexpr float kFronts = 0.14F;
 
 /// Parameters of the noise of gusts.
@@ -28,7 +28,7 @@ struct GustNoiseSettings {
 };
 
 /// Gusts as a pattern that the wind carries over the ground, split into octaves of the wavenumber, so that each can be
-/// given its own strength at each moment (engine/wind/README.md W14). Every octave has mean 0 and variance 1 as it is
+/// given its own strength at each moment (engine/wind/model.md W14). Every octave has mean 0 and variance 1 as it is
 /// read, in every direction.
 ///
 /// The octaves of the tiles are vectors, as on a plane through isotropic, incompressible turbulence

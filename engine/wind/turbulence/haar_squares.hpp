@@ -8,7 +8,7 @@
 namespace yuragi::wind::turbulence {
 
 /// The mean squares of differences between neighbouring means of 1, 2, 4 ... readings, over past readings with a fading
-/// memory: Haar's variances (engine/wind/README.md W28). Thread-safe: no. Realtime-safe: yes.
+/// memory: Haar's variances (engine/wind/model.md W28). Thread-safe: no. Realtime-safe: yes.
 class HaarSquares {
  public:
   static constexpr std::size_t kScales = 10;

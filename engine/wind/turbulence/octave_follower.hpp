@@ -10,7 +10,7 @@
 
 namespace yuragi::wind::turbulence {
 
-/// Splits a signal of vectors into octave bands as it arrives (engine/wind/README.md W17): a bank of one-pole low
+/// Splits a signal of vectors into octave bands as it arrives (engine/wind/model.md W17): a bank of one-pole low
 /// passes an octave apart, all fed with the last reading; a band is the difference between two neighbours, and the slow
 /// mean the output of the lowest. All bands and the mean add up to the output of the highest.
 ///

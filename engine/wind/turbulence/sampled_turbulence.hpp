@@ -6,7 +6,7 @@
 
 namespace yuragi::wind::turbulence {
 
-// Instantaneous samples of turbulence with von Karman's spectrum (engine/wind/README.md W39, W40). A sample every
+// Instantaneous samples of turbulence with von Karman's spectrum (engine/wind/model.md W39, W40). A sample every
 // `interval` has the whole variance: faster waves are aliased to slower ones. Thread-safe.
 
 /// The mean square of the difference between neighbouring means of 2^scale samples, over the variance, by the

@@ -11,7 +11,7 @@ namespace yuragi::wind::turbulence {
 /// A sensor with a reading every 14 s does not resolve faster gusts: they are made from von Karman's spectrum, fitted
 /// to its readings, which does not fit every site (trees, houses and slopes stir the air at their own scales). The
 /// error of the fit is similar from day to day, at the same frequency rather than at the same wavelength; so it is
-/// learnt while a fast source is live, as a mean of decibels, and forgotten over days (engine/wind/README.md W30).
+/// learnt while a fast source is live, as a mean of decibels, and forgotten over days (engine/wind/model.md W30).
 /// Thread-safe: no. Realtime-safe: yes.
 class SiteSpectrum {
  public:

@@ -24,7 +24,7 @@ struct Prior {
 };
 
 /// Fits turbulence to the readings of one component, along the wind or across it, as they arrive: a rolling fit over
-/// past readings alone (engine/wind/README.md W28, W29).
+/// past readings alone (engine/wind/model.md W28, W29).
 ///
 /// It uses Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ... readings.
 /// Each is the part of von Karman's spectrum after a reading's averaging, or sampling, in closed form except for one

@@ -4,7 +4,7 @@
 
 namespace yuragi::wind::turbulence {
 
-// Von Karman's spectra of the wind's components along the mean wind and across it, at one place (engine/wind/README.md
+// Von Karman's spectra of the wind's components along the mean wind and across it, at one place (engine/wind/model.md
 // W5). x = f T is without unit: f the frequency, T = L / U the integral length scale of u over the mean speed, for
 // both. Times the component's variance and T they are one-sided spectral densities, m^2/s^2/Hz. Source: von Karman
 // 1948, Progress in the statistical theory of turbulence; the constant as in ESDU 85020. Thread-safe and realtime-safe.

@@ -15,7 +15,7 @@ namespace yuragi::wind::turbulence {
 // How the energy of the wind's fluctuations is spread over frequency: the named models, for analysis, fitting and
 // tests. All are one-sided densities S(f) in m^2/s^2/Hz: their integral over f from 0 on is the component's variance.
 // n = f z / U is the reduced frequency, u* the friction velocity, s the component's standard deviation, z the height in
-// m, U the mean speed in m/s. The same table, with the integrals: engine/wind/README.md W1 to W6.
+// m, U the mean speed in m/s. The same table, with the integrals: engine/wind/model.md W1 to W6.
 //
 // clang-format off
 //   model        component  f S                                                   source

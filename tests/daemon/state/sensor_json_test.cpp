@@ -17,6 +17,7 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   sensors.sensors = {sensor};
   sensors.wind.wind = {.u_m_s = -4.0, .v_m_s = 0.0};
   sensors.gust_reach_across = 1.5;
+  sensors.feeds = {{.kind = "osc", .name = "wall", .target = "127.0.0.1:9000", .sends = "wind", .messages = 7}};
   sensors.recorder = wire::RecorderStatus{.state = wire::RecorderState::kHanging,
                                           .written = 12,
                                           .clock_doubt = "the clock is doubted",
@@ -37,6 +38,9 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   EXPECT_EQ(json["wind"]["source"], "default");
   EXPECT_EQ(json["gust_reach"]["across"], 1.5);
   EXPECT_TRUE(json["gust_reach"]["along"].is_null());
+  EXPECT_EQ(json["feeds"].at(0)["target"], "127.0.0.1:9000");
+  EXPECT_EQ(json["feeds"].at(0)["messages"], 7);
+  EXPECT_TRUE(json["feeds"].at(0)["last_sent_age_s"].is_null());
   EXPECT_EQ(json["recorder"]["state"], "hanging");
   EXPECT_TRUE(json["recorder"]["free_bytes"].is_null());
   EXPECT_EQ(json["recorder"]["clock_doubt"], "the clock is doubted");

@@ -200,6 +200,16 @@ TEST(OscDriver, TakesNumbersOfAnyTypeInAnyOrder) {
   EXPECT_EQ(run.last().direction_deg, 350.0);
 }
 
+TEST(OscDriver, KnowsWhatADaemonSendsBesideItsWind) {
+  OscRun run;
+  for (const char* address : {"/wind/speed", "/sensor/roof/age", "/place/door", "/scene/meadow/opacity"})
+    run.send({address, "f", "1"});
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "4.5", "270"}); }));
+  EXPECT_EQ(run.all().refused_count(decode::Refusal::kNotMine), 0U);
+  run.send({"/window/speed", "f", "1"});
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine));
+}
+
 TEST(OscDriver, HasNoDirectionWhereNoneIsSent) {
   OscRun run;
   ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "f", "4.5"}); }));

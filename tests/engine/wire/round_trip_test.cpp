@@ -432,6 +432,12 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.recent_ticks, 36'000U);
   EXPECT_EQ(sensors.recent_skipped_ticks, 40U);
   EXPECT_EQ(sensors.troubles, std::vector<std::string>{"the page cannot be served"});
+  ASSERT_EQ(sensors.feeds.size(), 2U);
+  EXPECT_EQ(sensors.feeds[0].target, "192.168.1.40:9000");
+  EXPECT_EQ(sensors.feeds[0].bytes, 9000U);
+  EXPECT_EQ(sensors.feeds[0].last_sent_age_s, 0.25);
+  EXPECT_EQ(sensors.feeds[0].trouble, "nothing listens");
+  EXPECT_EQ(sensors.feeds[1].last_sent_age_s, std::nullopt);
   ASSERT_TRUE(sensors.recorder);
   EXPECT_EQ(sensors.recorder->state, RecorderState::kRetrying);
   EXPECT_EQ(sensors.recorder->written, 9U);

@@ -425,7 +425,16 @@ inline wire::Sensors sensors() {
       .recent_skipped_ticks = 40,
       .troubles = {"the page cannot be served"},
       .given_up = 3,
-      .gust_reach_across = 1.5};
+      .gust_reach_across = 1.5,
+      .feeds = {{.kind = "osc",
+                 .name = "wall",
+                 .target = "192.168.1.40:9000",
+                 .sends = "wind",
+                 .messages = 60,
+                 .bytes = 9000,
+                 .last_sent_age_s = 0.25,
+                 .trouble = "nothing listens"},
+                {.kind = "dmx", .name = "lamp", .target = "multicast", .sends = "2 channels"}}};
 }
 
 inline wire::RawTrace raw_trace() {
