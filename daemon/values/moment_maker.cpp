@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "engine/base/simd_row.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::daemon::values {
@@ -60,6 +61,22 @@ void MomentMaker::set_places(std::span<const Place> places, bool with_real) {
   rename(names);
 }
 
+MomentMaker::Pixels MomentMaker::make_pixels(const Grid& grid) const {
+  constexpr double kFinest_m = 0.5;
+  std::vector<float> east_m, south_m;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const Grid::Point point = grid.at(i);
+    east_m.push_back(static_cast<float>(point.east_m));
+    south_m.push_back(static_cast<float>(point.south_m));
+  }
+  return {.grid = grid,
+          .wind = std::make_unique<scenes::WindGrid>(gusts_, east_m, south_m, best_simd_row(),
+                                                     std::max(kFinest_m, grid.spacing_m), grid.columns),
+          .east_m_s = std::vector<float>(grid.size()),
+          .south_m_s = std::vector<float>(grid.size()),
+          .meters = std::vector<Meter>(needs_the_past(grid.quantity) ? grid.size() : 0)};
+}
+
 void MomentMaker::set_grids(std::span<const Grid> grids) {
   std::vector<Pixels> next;
   for (const Grid& grid : grids) {
@@ -68,9 +85,7 @@ void MomentMaker::set_grids(std::span<const Grid> grids) {
       next.push_back(std::move(*before));
       continue;
     }
-    Pixels& pixels = next.emplace_back(Pixels{.grid = grid, .points = {}, .meters = {}});
-    for (std::size_t i = 0; i < grid.size(); ++i) pixels.points.push_back(grid.at(i));
-    if (needs_the_past(grid.quantity)) pixels.meters.resize(grid.size());
+    next.push_back(make_pixels(grid));
   }
   grids_ = std::move(next);
   Names names = *names_;
@@ -110,7 +125,8 @@ std::shared_ptr<const Moment> MomentMaker::make(const Tick& tick, std::vector<Se
   moment->opacities = std::move(opacities);
   moment->openness = tick.openness;
   if (places_.empty() && grids_.empty()) return moment;
-  const wind::ground::Wind shaped = wind::ground::written_to(shaped_.tapes, tick.shaped);
+  wind::ground::Wind shaped = wind::ground::written_to(shaped_.tapes, tick.shaped);
+  shaped.tick = moment->tick;
   moment->shaped_places = read_places(shaped_, shaped, tick.shaped.state, tick.dt_s, tick.shaped_scale);
   moment->grids.reserve(grids_.size());
   for (Pixels& pixels : grids_) moment->grids.push_back(read_grid(pixels, shaped, moment->shaped, tick));
@@ -133,17 +149,16 @@ std::vector<Readout> MomentMaker::read_places(Side& side, const wind::ground::Wi
 }
 
 std::vector<double> MomentMaker::read_grid(Pixels& pixels, const wind::ground::Wind& ground, const Readout& middle,
-                                           const Tick& tick) const {
+                                           const Tick& tick) {
   const wind::State& state = tick.shaped.state;
   const Quantity quantity = pixels.grid.quantity;
+  if (is_of_all_places(quantity)) return std::vector<double>(pixels.grid.size(), middle[quantity]);
+  pixels.wind->step(ground, tick.dt_s);
+  pixels.wind->sample(0, pixels.east_m_s, pixels.south_m_s);
   std::vector<double> values;
-  values.reserve(pixels.points.size());
-  for (std::size_t i = 0; i < pixels.points.size(); ++i) {
-    if (is_of_all_places(quantity)) {
-      values.push_back(middle[quantity]);
-      continue;
-    }
-    const wind::Vector wind = ground.at(*gusts_, pixels.points[i].east_m, pixels.points[i].south_m);
+  values.reserve(pixels.grid.size());
+  for (std::size_t i = 0; i < pixels.grid.size(); ++i) {
+    const wind::Vector wind{static_cast<double>(pixels.east_m_s[i]), -static_cast<double>(pixels.south_m_s[i])};
     if (pixels.meters.empty()) {
       values.push_back(present_value(quantity, wind, tick.shaped_scale));
       continue;

@@ -8,6 +8,7 @@
 #include "daemon/values/grid.hpp"
 #include "daemon/values/meter.hpp"
 #include "daemon/values/moment.hpp"
+#include "engine/scenes/wind_grid.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 #include "engine/wind/ground/wind_tapes.hpp"
 #include "engine/wind/turbulence/gust_noise.hpp"
@@ -57,14 +58,16 @@ class MomentMaker {
     std::vector<Meter> places;
     wind::ground::WindTapes tapes;
   };
-  /// The points of one grid.
+  /// The points of one grid, whose wind is read as a scene reads it: much cheaper than place by place.
   struct Pixels {
     Grid grid;
-    std::vector<Grid::Point> points;
+    std::unique_ptr<scenes::WindGrid> wind;
+    std::vector<float> east_m_s, south_m_s;
     std::vector<Meter> meters;  ///< one for each; empty: its values follow from the wind of the tick
   };
-  std::vector<double> read_grid(Pixels& pixels, const wind::ground::Wind& ground, const Readout& middle,
-                                const Tick& tick) const;
+  Pixels make_pixels(const Grid& grid) const;
+  static std::vector<double> read_grid(Pixels& pixels, const wind::ground::Wind& ground, const Readout& middle,
+                                       const Tick& tick);
   std::vector<Readout> read_places(Side& side, const wind::ground::Wind& ground, const wind::State& state, double dt_s,
                                    const NormScale& scale) const;
   void rename(const Names& names);
