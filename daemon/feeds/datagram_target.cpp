@@ -39,8 +39,11 @@ struct DatagramTarget::Socket {
   udp::socket socket{io};
 };
 
-DatagramTarget::DatagramTarget(std::string feed, const std::string& address)
-    : feed_(std::move(feed)), address_(address), socket_(std::make_unique<Socket>(parse_address(address).value())) {}
+DatagramTarget::DatagramTarget(std::string feed, const std::string& address, std::string interface)
+    : feed_(std::move(feed)),
+      address_(address),
+      interface_(std::move(interface)),
+      socket_(std::make_unique<Socket>(parse_address(address).value())) {}
 DatagramTarget::~DatagramTarget() {
   socket_->lookup.interrupt();
 }
@@ -61,6 +64,10 @@ void DatagramTarget::open(MonoTime now) {
   if (!error) socket.non_blocking(true, error);
   if (!error && endpoint.address().is_v4()) socket.set_option(asio::socket_base::broadcast(true), error);
   if (!error && endpoint.address().is_multicast()) socket.set_option(asio::ip::multicast::hops(1), error);
+  if (!error && !interface_.empty() && endpoint.address().is_multicast()) {
+    const auto own = asio::ip::make_address_v4(interface_, error);
+    if (!error) socket.set_option(asio::ip::multicast::outbound_interface(own), error);
+  }
   if (!error) socket.connect(endpoint, error);
   if (!error) return;
   note(text_of(error, address_), now);

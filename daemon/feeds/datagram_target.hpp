@@ -15,8 +15,9 @@ namespace yuragi::daemon::feeds {
 /// again when it is over. Thread-safe: no.
 class DatagramTarget {
  public:
-  /// `feed`: the feed's name, stands before what is logged. `address`: HOST:PORT, which was checked.
-  DatagramTarget(std::string feed, const std::string& address);
+  /// `feed`: the feed's name, stands before what is logged. `address`: HOST:PORT, which was checked. `interface`: this
+  /// machine's IPv4 address on the network for a multicast address; empty: the system chooses.
+  DatagramTarget(std::string feed, const std::string& address, std::string interface = {});
   ~DatagramTarget();
 
   void send(std::span<const std::uint8_t> datagram, MonoTime now);
@@ -33,7 +34,7 @@ class DatagramTarget {
   void open(MonoTime now);
   void note(const std::string& trouble, MonoTime now);
 
-  std::string feed_, address_;
+  std::string feed_, address_, interface_;
   std::unique_ptr<Socket> socket_;
   std::uint64_t messages_ = 0, bytes_ = 0;
   std::optional<MonoTime> last_sent_, opened_, failed_;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "daemon/feeds/dmx_feed.hpp"
 #include "daemon/feeds/osc_feed.hpp"
 #include "engine/base/contain.hpp"
 
@@ -18,14 +19,19 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 constexpr auto kLongestFarewell = std::chrono::seconds(1);
 
 /// The configuration of one feed.
-using AnyConfig = std::variant<settings::feeds::Osc>;
+using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx>;
 
 std::vector<AnyConfig> all_of(const settings::feeds::Config& config) {
-  return {config.osc.begin(), config.osc.end()};
+  std::vector<AnyConfig> all(config.osc.begin(), config.osc.end());
+  all.insert(all.end(), config.dmx.begin(), config.dmx.end());
+  return all;
 }
 
 std::unique_ptr<Feed> make_feed(const settings::feeds::Osc& osc) {
   return make_osc_feed(osc);
+}
+std::unique_ptr<Feed> make_feed(const settings::feeds::Dmx& dmx) {
+  return make_dmx_feed(dmx);
 }
 
 /// A feed that runs, with the configuration that it was made of.

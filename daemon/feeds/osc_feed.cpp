@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "daemon/feeds/datagram_target.hpp"
+#include "daemon/feeds/interval.hpp"
 #include "daemon/feeds/osc_addresses.hpp"
 #include "daemon/feeds/osc_cue.hpp"
 #include "drivers/bus/osc_message.hpp"
@@ -31,22 +32,6 @@ constexpr std::size_t kMaxDatagram = 1400;
 constexpr std::size_t kBundleHead = 16, kElementHead = 4;
 constexpr double kSensorsEvery_s = 0.1;
 constexpr double kStatesEvery_s = 1.0;
-
-/// What comes round at an interval. A late call does not move the ones after it.
-class Interval {
- public:
-  explicit Interval(double every_s) : every_s_(every_s) {}
-  bool is_due(double now_s) {
-    constexpr double kEarly_s = 1e-6;  // of times that are sums of many steps
-    if (next_s_ && now_s + kEarly_s < *next_s_) return false;
-    next_s_ = next_s_ && now_s - *next_s_ < every_s_ ? *next_s_ + every_s_ : now_s + every_s_;
-    return true;
-  }
-
- private:
-  double every_s_;
-  std::optional<double> next_s_;
-};
 
 /// An [[osc.map]] as it runs.
 struct Mapping {
@@ -166,8 +151,7 @@ class OscFeed final : public Feed {
       const std::optional<double> value = map.config.value.value_in(moment, config_.wind);
       if (!value) continue;
       const OscMap& config = map.config;
-      const double part = std::clamp((*value - config.from.from) / (config.from.to - config.from.from), 0.0, 1.0);
-      const double wanted = config.to.from + (config.to.to - config.to.from) * std::pow(part, config.curve);
+      const double wanted = config.to.at(std::pow(config.from.part_of(*value), config.curve));
       const double past_s = mapped_s_ ? moment.time_s - *mapped_s_ : 0.0;
       const double share = config.smooth_s > 0.0 ? 1.0 - std::exp(-past_s / config.smooth_s) : 1.0;
       map.smoothed = map.smoothed ? *map.smoothed + share * (wanted - *map.smoothed) : wanted;

@@ -162,6 +162,7 @@ class Service::Io {
     if (options.record) history_ = make_history(*options.record);
     moments_.set_sensors(settings::names_of(config).sensors);
     moments_.set_places(config.feeds.places, config.feeds.wants_real_places());
+    moments_.set_grids(config.feeds.grids());
     read_token();
     open_page();
     for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
@@ -439,6 +440,7 @@ class Service::Io {
     norms_ = norms_of(next.shaping);
     if (plan.changes_feeds) {
       moments_.set_places(next.feeds.places, next.feeds.wants_real_places());
+      moments_.set_grids(next.feeds.grids());
       feeds_->change(next.feeds);
     }
     stream_.set_admission(admission_of(next.stream));
@@ -513,7 +515,8 @@ class Service::Io {
                                    .real_scale = real_scale,
                                    .shaped_scale = norms_.shaped.value_or(real_scale),
                                    .time = now,
-                                   .dt_s = dt_s},
+                                   .dt_s = dt_s,
+                                   .openness = shaping.openness},
                                   hub_.values(), opacities_));
   }
 

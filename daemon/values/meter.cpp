@@ -16,15 +16,15 @@ constexpr double kPart_s = 0.25;
 /// Below this speed the direction is kept.
 constexpr double kMinDirected_m_s = 0.05;
 
-double norm_of(double speed_m_s, const NormScale& scale) {
-  if (!(scale.median_m_s > 0.0)) return 0.0;
-  if (speed_m_s <= scale.median_m_s) return 0.5 * speed_m_s / scale.median_m_s;
-  const double above_m_s = scale.strong_m_s - scale.median_m_s;
-  if (!(above_m_s > 0.0)) return 1.0;
-  return std::min(0.5 + 0.5 * (speed_m_s - scale.median_m_s) / above_m_s, 1.0);
-}
-
 }  // namespace
+
+double NormScale::norm_of(double speed_m_s) const noexcept {
+  if (!(median_m_s > 0.0)) return 0.0;
+  if (speed_m_s <= median_m_s) return 0.5 * speed_m_s / median_m_s;
+  const double above_m_s = strong_m_s - median_m_s;
+  if (!(above_m_s > 0.0)) return 1.0;
+  return std::min(0.5 + 0.5 * (speed_m_s - median_m_s) / above_m_s, 1.0);
+}
 
 void Meter::add(wind::Vector wind, double live, double age_s, double dt_s, const NormScale& scale) noexcept {
   const double step_s = std::clamp(std::isfinite(dt_s) ? dt_s : 0.0, 0.0, 1.0);
@@ -47,7 +47,7 @@ void Meter::add(wind::Vector wind, double live, double age_s, double dt_s, const
   set(Quantity::kMean, mean);
   set(Quantity::kGust, gust_m_s);
   set(Quantity::kPeak, std::max(peak_m_s_, strongest_m_s_[second_ % kGusts_s]));
-  set(Quantity::kNorm, norm_of(speed_m_s, scale));
+  set(Quantity::kNorm, scale.norm_of(speed_m_s));
   set(Quantity::kGustNorm, std::clamp(gust_m_s / (2.0 * gust_deviation_m_s(mean)), 0.0, 1.0));
   set(Quantity::kLive, std::clamp(live, 0.0, 1.0));
   set(Quantity::kAge, live > 0.0 ? std::max(age_s, 0.0) : readout_[Quantity::kAge] + step_s);

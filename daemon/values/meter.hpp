@@ -12,6 +12,9 @@ namespace yuragi::daemon::values {
 struct NormScale {
   double median_m_s = 6.0;
   double strong_m_s = 12.0;  ///< above the median, otherwise `norm` ends at 1 there
+
+  /// From 0 to 1.
+  double norm_of(double speed_m_s) const noexcept;
 };
 
 /// Derives all quantities of a wind from its vector, tick by tick. The same at every tick rate; a wind that is not

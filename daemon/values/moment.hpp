@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/values/grid.hpp"
 #include "daemon/values/quantity.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
@@ -31,9 +32,10 @@ struct SensorValue {
   friend bool operator==(const SensorValue&, const SensorValue&) = default;
 };
 
-/// The names of an installation's sensors, places and scenes, in the order of a Moment's values.
+/// The names of an installation's sensors, places and scenes, and its grids, in the order of a Moment's values.
 struct Names {
   std::vector<std::string> sensors, places, scenes;
+  std::vector<Grid> grids = {};
   friend bool operator==(const Names&, const Names&) = default;
 };
 
@@ -52,6 +54,8 @@ struct Moment {
   std::vector<SensorValue> sensors = {};
   std::vector<Readout> shaped_places = {}, real_places = {};  ///< real_places: empty unless they are asked for
   std::vector<double> opacities = {};                         ///< of the scenes; empty: there are none
+  std::vector<std::vector<double>> grids = {};                ///< of the shaped wind, a value for each point
+  double openness = 1.0;                                      ///< of the opening hours; 0: closed, 1: open
 
   const Readout& wind(Wind which) const noexcept { return which == Wind::kShaped ? shaped : real; }
   std::span<const Readout> places(Wind which) const noexcept {

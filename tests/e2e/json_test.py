@@ -55,6 +55,7 @@ WITHOUT_A_TABLE = {
     "wind": "writes CSV, a table for programs",
     "calibrate zero": "a dialog", "calibrate north": "a dialog", "calibrate span": "a dialog",
     "calibrate microphone": "a dialog",
+    "feeds rest": "says what it did",
     "support-bundle": "writes a file, and says so",
     "scene show": "says what it did", "scene hide": "says what it did", "scene switch": "says what it did",
     **{f"{of} {what}": "says what it did" for of in ("scene", "look") for what in ("set", "reset")},

@@ -73,6 +73,11 @@ class UnitsTest(unittest.TestCase):
         started = re.search(r"^ExecStart=.* --config (\S+)$", (UNITS / "yuragi.service").read_text(encoding="utf-8"), re.M)
         self.assertEqual(lines, [f"/usr/bin/yuragi check-config {started.group(1)}", "/bin/sh -c 'kill -HUP $MAINPID'"])
 
+    def test_lamps_and_fans_are_at_rest_whenever_it_has_ended(self):
+        text = (UNITS / "yuragi.service").read_text(encoding="utf-8")
+        started = re.search(r"^ExecStart=.* --config (\S+)$", text, re.M)
+        self.assertIn(f"\nExecStopPost=-/usr/bin/yuragi feeds rest --config {started.group(1)}\n", text)
+
     def test_the_example_configuration_runs(self):
         subprocess.run([BIN / "yuragi", "check-config", UNITS / "yuragi.toml"], check=True, stdout=subprocess.DEVNULL)
 

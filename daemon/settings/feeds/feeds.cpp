@@ -8,4 +8,14 @@ bool Config::wants_real_places() const {
   return !places.empty() && std::ranges::any_of(osc, [](const Osc& feed) { return feed.wind == values::Wind::kReal; });
 }
 
+std::vector<values::Grid> Config::grids() const {
+  std::vector<values::Grid> all;
+  for (const Dmx& feed : dmx) {
+    for (const DmxGrid& grid : feed.grids) {
+      if (std::ranges::count(all, grid.grid) == 0) all.push_back(grid.grid);
+    }
+  }
+  return all;
+}
+
 }  // namespace yuragi::daemon::settings::feeds

@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "daemon/settings/feeds/dmx.hpp"
 #include "daemon/settings/feeds/osc.hpp"
+#include "daemon/values/grid.hpp"
 #include "daemon/values/moment.hpp"
 #include "daemon/values/moment_maker.hpp"
 
@@ -13,11 +15,15 @@ namespace yuragi::daemon::settings::feeds {
 struct Config {
   std::vector<values::Place> places;
   std::vector<Osc> osc;
+  std::vector<Dmx> dmx = {};
 
   friend bool operator==(const Config&, const Config&) = default;
 
   /// Is the real wind of the places wanted by any feed?
   bool wants_real_places() const;
+
+  /// The grids of all feeds, no two alike.
+  std::vector<values::Grid> grids() const;
 };
 
 }  // namespace yuragi::daemon::settings::feeds

@@ -3,6 +3,8 @@
 #include <array>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "daemon/settings/feeds/place.hpp"
 
 namespace yuragi::daemon::settings::feeds {
@@ -42,6 +44,29 @@ std::vector<ParameterError> add_osc_cue(Config& config, const std::string&, cons
   return add_to(config.osc.back().cues, osc_cue_of(values, names));
 }
 
+std::vector<ParameterError> add_dmx(Config& config, const std::string& name, const ParameterValues& values,
+                                    const values::Names&) {
+  return add_to(config.dmx, dmx_of(name, values));
+}
+
+std::vector<ParameterError> add_dmx_channel(Config& config, const std::string&, const ParameterValues& values,
+                                            const values::Names& names) {
+  if (config.dmx.empty()) return {};
+  return add_to(config.dmx.back().channels, dmx_channel_of(config.dmx.back(), values, names));
+}
+
+std::vector<ParameterError> add_dmx_grid(Config& config, const std::string&, const ParameterValues& values,
+                                         const values::Names&) {
+  if (config.dmx.empty()) return {};
+  auto grid = dmx_grid_of(config.dmx.back(), values);
+  std::size_t pixels = grid ? grid->grid.size() : 0;
+  for (const values::Grid& other : config.grids()) pixels += other.size();
+  if (grid && pixels > kMaxDmxPixels)
+    return {
+        {"columns", fmt::format("and rows make {} pixels with the other grids (maximum {})", pixels, kMaxDmxPixels)}};
+  return add_to(config.dmx.back().grids, std::move(grid));
+}
+
 }  // namespace
 
 std::span<const ListTable> list_tables() {
@@ -59,6 +84,20 @@ std::span<const ListTable> list_tables() {
                 .parameters = osc_cue_parameters(),
                 .add = add_osc_cue},
   };
+  static const std::array kDmxLists = {
+      ListTable{.name = "channel",
+                .summary = "below a [[dmx]]: a value as the level of a channel",
+                .max_entries = kDmxChannels,
+                .needs_name = false,
+                .parameters = dmx_channel_parameters(),
+                .add = add_dmx_channel},
+      ListTable{.name = "grid",
+                .summary = "below a [[dmx]]: the wind at points of the ground as pixels of an LED wall",
+                .max_entries = kMaxFeeds,
+                .needs_name = false,
+                .parameters = dmx_grid_parameters(),
+                .add = add_dmx_grid},
+  };
   static const std::array kTables = {
       ListTable{.name = "place",
                 .summary = "a point on the ground whose wind feeds send; with a name",
@@ -73,6 +112,13 @@ std::span<const ListTable> list_tables() {
                 .parameters = osc_parameters(),
                 .add = add_osc,
                 .below = kOscLists},
+      ListTable{.name = "dmx",
+                .summary = "sends the wind to lamps, fans and LED walls, by sACN or Art-Net",
+                .max_entries = kMaxFeeds,
+                .needs_name = false,
+                .parameters = dmx_parameters(),
+                .add = add_dmx,
+                .below = kDmxLists},
   };
   return kTables;
 }

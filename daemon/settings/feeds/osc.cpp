@@ -1,7 +1,6 @@
 #include "daemon/settings/feeds/osc.hpp"
 
 #include <algorithm>
-#include <locale>
 #include <sstream>
 #include <utility>
 
@@ -187,25 +186,7 @@ const Fields<OscCue>& osc_cue_fields() {
   return kFields;
 }
 
-/// The settings of values whose conversions may refuse one.
-template <class Made>
-Result<Made, ParameterError> made_of(const Fields<Made>& fields, const ParameterValues& values) {
-  Made made{};
-  const std::vector<ParameterError> errors = fields.fill(made, values.all());
-  if (!errors.empty()) return errors.front();
-  return {boost::system::in_place_value, std::move(made)};
-}
-
 }  // namespace
-
-Result<Span, Failure> span_of(std::string_view text) {
-  std::istringstream in{std::string(text)};
-  in.imbue(std::locale::classic());
-  Span span;
-  std::string more;
-  if (in >> span.from >> span.to && !(in >> more) && span.from != span.to) return span;
-  return Failure{fmt::format("is \"{}\"; give two different numbers: \"0 12\"", text)};
-}
 
 double OscCue::limit_m_s() const {
   return speed_m_s.value_or(when == OscCondition::kCalm ? kUsualCalm_m_s : kUsualAbove_m_s);

@@ -8,21 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/settings/feeds/span.hpp"
 #include "daemon/values/moment.hpp"
 #include "daemon/values/reference.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::settings::feeds {
-
-/// Two numbers, and what lies between them.
-struct Span {
-  double from = 0.0, to = 1.0;
-  friend bool operator==(const Span&, const Span&) = default;
-};
-
-/// "0 12": two different numbers.
-Result<Span, Failure> span_of(std::string_view text);
 
 /// An [[osc.map]]: a value, brought from one range into another, at an address of the receiver's own.
 struct OscMap {

@@ -7,20 +7,17 @@
 #include <thread>
 #include <vector>
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/udp.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "daemon/feeds/feeds.hpp"
 #include "daemon/feeds/osc_addresses.hpp"
 #include "drivers/bus/osc_message.hpp"
+#include "tests/daemon/feeds/receiver.hpp"
 
 namespace yuragi::daemon::feeds {
 namespace {
 
-namespace asio = boost::asio;
-using asio::ip::udp;
 using drivers::bus::OscMessage;
 using settings::feeds::Osc;
 using testing::ElementsAre;
@@ -29,36 +26,15 @@ using testing::IsEmpty;
 using testing::Not;
 using values::Quantity;
 
-/// A program that listens on a free port of this machine.
-class Receiver {
- public:
-  std::string address() const { return "127.0.0.1:" + std::to_string(socket_.local_endpoint().port()); }
-
-  /// The datagrams that have arrived.
-  std::vector<std::vector<std::uint8_t>> datagrams() {
-    std::vector<std::vector<std::uint8_t>> all;
-    while (socket_.available() > 0) {
-      std::vector<std::uint8_t> datagram(65'536);
-      datagram.resize(socket_.receive(asio::buffer(datagram)));
-      all.push_back(std::move(datagram));
-    }
-    return all;
+std::vector<OscMessage> messages_to(Receiver& receiver) {
+  std::vector<OscMessage> all;
+  for (const auto& datagram : receiver.datagrams()) {
+    auto decoded = drivers::bus::decode_osc(datagram);
+    if (!decoded) continue;
+    for (OscMessage& message : *decoded) all.push_back(std::move(message));
   }
-
-  std::vector<OscMessage> messages() {
-    std::vector<OscMessage> all;
-    for (const auto& datagram : datagrams()) {
-      auto decoded = drivers::bus::decode_osc(datagram);
-      if (!decoded) continue;
-      for (OscMessage& message : *decoded) all.push_back(std::move(message));
-    }
-    return all;
-  }
-
- private:
-  asio::io_context io_;
-  udp::socket socket_{io_, udp::endpoint(asio::ip::address_v4::loopback(), 0)};
-};
+  return all;
+}
 
 std::map<std::string, int> counts_of(const std::vector<OscMessage>& messages) {
   std::map<std::string, int> counts;
@@ -92,7 +68,7 @@ TEST(OscFeedTest, SendsTheWindFirstThenItsValues) {
   Receiver receiver;
   const auto feed = make_osc_feed({.name = "a", .to = receiver.address(), .send = "wind"});
   feed->send(moment_at(0.0));
-  const std::vector<OscMessage> messages = receiver.messages();
+  const std::vector<OscMessage> messages = messages_to(receiver);
   ASSERT_EQ(messages.size(), 1U + values::kQuantityCount + 1U);
   EXPECT_EQ(messages[0].address, "/wind");
   EXPECT_THAT(messages[0].numbers, ElementsAre(6.0, 270.0));
@@ -108,7 +84,7 @@ TEST(OscFeedTest, EachMessageComesAtItsRate) {
   const auto feed = make_osc_feed(
       {.name = "a", .to = receiver.address(), .rate_hz = 30.0, .send = "wind sensors places scenes", .prefix = "/y"});
   send_a_second(*feed);
-  std::map<std::string, int> counts = counts_of(receiver.messages());
+  std::map<std::string, int> counts = counts_of(messages_to(receiver));
   EXPECT_EQ(counts["/y/wind"], 30);
   EXPECT_EQ(counts["/y/place/door"], 30);
   EXPECT_EQ(counts["/y/place/door/gust_norm"], 30);
@@ -122,7 +98,7 @@ TEST(OscFeedTest, TheRealWindIsSentIfItIsWanted) {
   Receiver receiver;
   const auto feed = make_osc_feed({.name = "a", .to = receiver.address(), .send = "wind", .wind = values::Wind::kReal});
   feed->send(moment_at(0.0));
-  EXPECT_THAT(receiver.messages().at(0).numbers, ElementsAre(12.0, 0.0));
+  EXPECT_THAT(messages_to(receiver).at(0).numbers, ElementsAre(12.0, 0.0));
 }
 
 settings::feeds::OscMap map_of(std::string value, settings::feeds::Span from, settings::feeds::Span to) {
@@ -142,7 +118,7 @@ TEST(OscFeedTest, AMappedValueIsBroughtIntoItsRange) {
   config.maps.back().curve = 2.0;
   const auto feed = make_osc_feed(config);
   feed->send(moment_at(0.0));
-  const std::vector<OscMessage> messages = receiver.messages();
+  const std::vector<OscMessage> messages = messages_to(receiver);
   ASSERT_EQ(messages.size(), 3U);
   EXPECT_NEAR(*messages[0].numbers.at(0), 0.6, 1e-6);
   EXPECT_NEAR(*messages[1].numbers.at(0), 0.0, 1e-6) << "limited";
@@ -161,7 +137,7 @@ TEST(OscFeedTest, ASmoothedValueApproachesAStep) {
     feed->send(moment);
   }
   // From the second moment on, half a second.
-  EXPECT_NEAR(*receiver.messages().back().numbers.at(0), 10.0 * (1.0 - std::exp(-1.0)), 0.15);
+  EXPECT_NEAR(*messages_to(receiver).back().numbers.at(0), 10.0 * (1.0 - std::exp(-1.0)), 0.15);
 }
 
 TEST(OscFeedTest, ACueHasNoArguments) {
@@ -170,7 +146,7 @@ TEST(OscFeedTest, ACueHasNoArguments) {
   config.cues = {{.when = settings::feeds::OscCondition::kWindAbove, .speed_m_s = 5.0, .address = "/cue/gust/go"}};
   const auto feed = make_osc_feed(config);
   send_a_second(*feed);
-  const std::vector<OscMessage> messages = receiver.messages();
+  const std::vector<OscMessage> messages = messages_to(receiver);
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_EQ(messages[0].address, "/cue/gust/go");
   EXPECT_THAT(messages[0].numbers, IsEmpty());
@@ -187,7 +163,7 @@ TEST(OscFeedTest, ATimeTagIsTheTimeOfTheTick) {
   Receiver receiver;
   const auto feed = make_osc_feed({.name = "a", .to = receiver.address(), .send = "wind", .time_tags = true});
   feed->send(moment_at(0.0));
-  EXPECT_EQ(receiver.messages().at(0).meant_for, UtcTime(std::chrono::seconds(1'700'000'000)));
+  EXPECT_EQ(messages_to(receiver).at(0).meant_for, UtcTime(std::chrono::seconds(1'700'000'000)));
 }
 
 TEST(OscFeedTest, LongBundlesAreDividedBetweenDatagrams) {
@@ -257,7 +233,7 @@ TEST(FeedsTest, GoOnIfTheirConfigurationStaysTheSame) {
   config.osc = {};
   feeds.change(config);
   EXPECT_TRUE(feeds.is_empty());
-  EXPECT_THAT(receiver.messages(), Not(IsEmpty()));
+  EXPECT_THAT(messages_to(receiver), Not(IsEmpty()));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "daemon/values/moment_maker.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "engine/wind/turbulence/gust_noise.hpp"
@@ -57,6 +58,42 @@ TEST_F(MomentMakerTest, APlaceThatStaysKeepsWhatIsKnownOfIt) {
   const auto moment = make(2.0);
   EXPECT_NEAR(moment->shaped_places.at(0)[Quantity::kPeak], 8.0, 1e-6);
   EXPECT_LT(moment->shaped_places.at(0)[Quantity::kSpeed], 2.1);
+}
+
+TEST(GridTest, ItsPointsAreInRowsFromTheNorthWest) {
+  const Grid grid{.columns = 3, .rows = 2, .spacing_m = 2.0, .east_m = 10.0, .south_m = 20.0};
+  EXPECT_EQ(grid.size(), 6U);
+  EXPECT_NEAR(grid.at(0).east_m, 8.0, 1e-9);
+  EXPECT_NEAR(grid.at(0).south_m, 19.0, 1e-9);
+  EXPECT_NEAR(grid.at(5).east_m, 12.0, 1e-9);
+  EXPECT_NEAR(grid.at(5).south_m, 21.0, 1e-9);
+  Grid turned = grid;
+  turned.turn_deg = 90.0;  // the north side is in the east
+  EXPECT_NEAR(turned.at(0).east_m, 11.0, 1e-9);
+  EXPECT_NEAR(turned.at(0).south_m, 18.0, 1e-9);
+}
+
+TEST_F(MomentMakerTest, AGridHasTheValueOfEachOfItsPoints) {
+  const Grid speeds{.columns = 4, .rows = 2, .quantity = Quantity::kSpeed};
+  Grid peaks = speeds, norms = speeds, live = speeds;
+  peaks.quantity = Quantity::kPeak;
+  norms.quantity = Quantity::kNorm;
+  live.quantity = Quantity::kLive;
+  maker_.set_grids(std::array{speeds, peaks, norms, live});
+  for (int i = 0; i < 600; ++i) make(8.0);
+  for (int i = 0; i < 120; ++i) make(3.0);  // as smooth as a scene's wind
+  const auto moment = make(3.0);
+  ASSERT_EQ(moment->names->grids.size(), 4U);
+  EXPECT_EQ(moment->names->grids[1], peaks);
+  const auto all = [](double value) {
+    return testing::AllOf(testing::SizeIs(8), testing::Each(testing::DoubleNear(value, 1e-4)));
+  };
+  EXPECT_THAT(moment->grids.at(0), all(3.0));
+  EXPECT_THAT(moment->grids.at(1), all(8.0));
+  EXPECT_THAT(moment->grids.at(2), all(0.25));
+  EXPECT_THAT(moment->grids.at(3), all(1.0));
+  maker_.set_grids(std::array{peaks});
+  EXPECT_THAT(make(3.0)->grids.at(0), all(8.0)) << "what is known of it is kept";
 }
 
 TEST_F(MomentMakerTest, AMomentKeepsTheNamesOfItsTime) {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/fields.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::settings::feeds {
+
+/// Two numbers, and what lies between them.
+struct Span {
+  double from = 0.0, to = 1.0;
+  friend bool operator==(const Span&, const Span&) = default;
+
+  /// How far a value is on the way from one end to the other, 0 to 1.
+  double part_of(double value) const noexcept;
+  /// The value there.
+  double at(double part) const noexcept { return from + (to - from) * part; }
+};
+
+/// "0 12": two different numbers.
+Result<Span, Failure> span_of(std::string_view text);
+
+/// The settings of values whose conversions may refuse one.
+template <class Made>
+Result<Made, ParameterError> made_of(const Fields<Made>& fields, const ParameterValues& values) {
+  Made made{};
+  const std::vector<ParameterError> errors = fields.fill(made, values.all());
+  if (!errors.empty()) return errors.front();
+  return {boost::system::in_place_value, std::move(made)};
+}
+
+}  // namespace yuragi::daemon::settings::feeds
