@@ -40,6 +40,20 @@ struct Names {
 /// The place of a name; nullopt: it is not there.
 std::optional<std::size_t> index_of(std::span<const std::string> names, std::string_view name) noexcept;
 
+/// An [[alert]] of the configuration.
+struct AlertState {
+  std::string name;
+  bool is_on = false;
+  friend bool operator==(const AlertState&, const AlertState&) = default;
+};
+
+/// How the daemon is.
+struct Health {
+  std::vector<AlertState> alerts;
+  bool needs_attention = false;
+  friend bool operator==(const Health&, const Health&) = default;
+};
+
 /// Everything that feeds send of one tick. Immutable once published; shared by all threads that send it.
 struct Moment {
   std::uint64_t tick = 0;  ///< of the wind; counts from the start, without gaps
@@ -52,6 +66,7 @@ struct Moment {
   std::vector<SensorValue> sensors = {};
   std::vector<Readout> shaped_places = {}, real_places = {};  ///< real_places: empty unless they are asked for
   std::vector<double> opacities = {};                         ///< of the scenes; empty: there are none
+  std::shared_ptr<const Health> health = std::make_shared<const Health>();
 
   const Readout& wind(Wind which) const noexcept { return which == Wind::kShaped ? shaped : real; }
   std::span<const Readout> places(Wind which) const noexcept {
