@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "daemon/feeds/datagram_target.hpp"
+#include "daemon/feeds/interval.hpp"
 #include "daemon/feeds/osc_addresses.hpp"
 #include "daemon/feeds/osc_cue.hpp"
 #include "drivers/bus/osc_message.hpp"
@@ -31,22 +32,6 @@ constexpr std::size_t kMaxDatagram = 1400;
 constexpr std::size_t kBundleHead = 16, kElementHead = 4;
 constexpr double kSensorsEvery_s = 0.1;
 constexpr double kStatesEvery_s = 1.0;
-
-/// What comes round at an interval. A late call does not move the ones after it.
-class Interval {
- public:
-  explicit Interval(double every_s) : every_s_(every_s) {}
-  bool is_due(double now_s) {
-    constexpr double kEarly_s = 1e-6;  // of times that are sums of many steps
-    if (next_s_ && now_s + kEarly_s < *next_s_) return false;
-    next_s_ = next_s_ && now_s - *next_s_ < every_s_ ? *next_s_ + every_s_ : now_s + every_s_;
-    return true;
-  }
-
- private:
-  double every_s_;
-  std::optional<double> next_s_;
-};
 
 /// An [[osc.map]] as it runs.
 struct Mapping {

@@ -3,16 +3,18 @@
 #include <string>
 #include <vector>
 
+#include "daemon/settings/feeds/mqtt.hpp"
 #include "daemon/settings/feeds/osc.hpp"
 #include "daemon/values/moment.hpp"
 #include "daemon/values/moment_maker.hpp"
 
 namespace yuragi::daemon::settings::feeds {
 
-/// What is sent to other programs: the typed form of the lists of list_tables().
+/// What is sent to other programs: the typed form of the lists of list_tables(), and of [mqtt].
 struct Config {
   std::vector<values::Place> places;
   std::vector<Osc> osc;
+  Mqtt mqtt;  ///< of its own table
 
   friend bool operator==(const Config&, const Config&) = default;
 
