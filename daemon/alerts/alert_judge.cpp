@@ -56,6 +56,16 @@ std::vector<Active> Judge::on() const {
   return all;
 }
 
+std::vector<values::AlertState> Judge::states() const {
+  std::vector<values::AlertState> all;
+  for (const Alert& alert : alerts_) {
+    const bool is_on =
+        std::ranges::any_of(alert.of_subject, [](const auto& subject) { return subject.second.has_begun; });
+    all.push_back({alert.config.name, is_on});
+  }
+  return all;
+}
+
 std::vector<Judge::Subject> Judge::subjects_of(const AlertConfig& alert, const wire::Sensors& status) const {
   switch (alert.when) {
     case AlertCondition::kSensorSilent: {

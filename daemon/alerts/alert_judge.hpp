@@ -10,6 +10,7 @@
 #include "daemon/alerts/alert_news.hpp"
 #include "daemon/alerts/alert_record.hpp"
 #include "daemon/settings/alert_config.hpp"
+#include "daemon/values/moment.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -29,6 +30,9 @@ class Judge {
 
   /// Returns those that have begun and not ended.
   std::vector<Active> on() const;
+
+  /// All alerts, in the order of the configuration.
+  std::vector<values::AlertState> states() const;
 
   /// Longer sentences are cut.
   static constexpr std::size_t kMaxMessage_bytes = 500;

@@ -12,6 +12,7 @@
 #include "daemon/alerts/alert_ledger.hpp"
 #include "daemon/alerts/delivery_queue.hpp"
 #include "daemon/settings/alert_config.hpp"
+#include "daemon/values/moment.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -33,6 +34,9 @@ class Alerts {
 
   /// Call it about twice a second. Does not wait. See Judge::judge().
   void judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
+
+  /// All alerts, in the order of the configuration. One is on from its beginning to its end.
+  std::vector<values::AlertState> states() const { return judge_.states(); }
 
  private:
   void resume(const std::vector<settings::AlertConfig>& alerts, const Instant& now);

@@ -31,6 +31,14 @@ void SceneDirector::follow(const SceneRoster& roster) {
 }
 
 wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_local) {
+  return carry_out(control, settings::control_refusal(allowed_, is_local, "scenes cannot be switched"));
+}
+
+wire::ControlReply SceneDirector::handle_permitted(const wire::Control& control) {
+  return carry_out(control, std::nullopt);
+}
+
+wire::ControlReply SceneDirector::carry_out(const wire::Control& control, const std::optional<std::string>& refusal) {
   if (control.scene.empty()) return {.done = true, .message = "nothing was changed", .scenes = scenes_};
   const auto found =
       std::find_if(scenes_.begin(), scenes_.end(), [&](const auto& scene) { return scene.name == control.scene; });
@@ -39,8 +47,7 @@ wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_l
     for (const wire::SceneState& scene : scenes_) known.append(known.empty() ? "" : ", ").append(scene.name);
     return refuse(fmt::format("there is no scene \"{}\"; there are: {}", control.scene, known));
   }
-  if (const auto refusal = settings::control_refusal(allowed_, is_local, "scenes cannot be switched"))
-    return refuse(*refusal);
+  if (refusal) return refuse(*refusal);
 
   const auto index = static_cast<std::size_t>(found - scenes_.begin());
   if (!send_cue_({index, control.shown, control.hide_others, control.over_s}))

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "daemon/animation/animation.hpp"
@@ -30,7 +32,11 @@ class SceneDirector {
   /// Carries out a client's request; the reply has the reason for a refusal. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::Control& control, bool is_local);
 
+  /// The same for somebody who may show and hide scenes by another right than [stream] control.
+  wire::ControlReply handle_permitted(const wire::Control& control);
+
  private:
+  wire::ControlReply carry_out(const wire::Control& control, const std::optional<std::string>& refusal);
   wire::ControlReply refuse(std::string why) const;
 
   settings::ControlPermission allowed_;

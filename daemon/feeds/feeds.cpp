@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "daemon/feeds/dmx_feed.hpp"
+#include "daemon/feeds/mqtt_feed.hpp"
 #include "daemon/feeds/osc_feed.hpp"
 #include "engine/base/contain.hpp"
 
@@ -19,19 +20,23 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 constexpr auto kLongestFarewell = std::chrono::seconds(1);
 
 /// The configuration of one feed.
-using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx>;
+using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx, settings::feeds::Mqtt>;
 
 std::vector<AnyConfig> all_of(const settings::feeds::Config& config) {
   std::vector<AnyConfig> all(config.osc.begin(), config.osc.end());
   all.insert(all.end(), config.dmx.begin(), config.dmx.end());
+  if (!config.mqtt.host.empty()) all.emplace_back(config.mqtt);
   return all;
 }
 
-std::unique_ptr<Feed> make_feed(const settings::feeds::Osc& osc) {
+std::unique_ptr<Feed> make_feed(const settings::feeds::Osc& osc, const Surroundings&) {
   return make_osc_feed(osc);
 }
-std::unique_ptr<Feed> make_feed(const settings::feeds::Dmx& dmx) {
+std::unique_ptr<Feed> make_feed(const settings::feeds::Dmx& dmx, const Surroundings&) {
   return make_dmx_feed(dmx);
+}
+std::unique_ptr<Feed> make_feed(const settings::feeds::Mqtt& mqtt, const Surroundings& around) {
+  return make_mqtt_feed(mqtt, around);
 }
 
 /// A feed that runs, with the configuration that it was made of.
@@ -41,7 +46,8 @@ struct Running {
 };
 
 /// Keeps the feeds whose configuration is the same, ends the others, and makes new ones.
-std::vector<Running> renewed(std::vector<Running> running, const settings::feeds::Config& config) {
+std::vector<Running> renewed(std::vector<Running> running, const settings::feeds::Config& config,
+                             const Surroundings& around) {
   std::vector<Running> next;
   for (AnyConfig& wanted : all_of(config)) {
     const auto same =
@@ -54,7 +60,8 @@ std::vector<Running> renewed(std::vector<Running> running, const settings::feeds
     ended.feed.reset();
   }
   for (Running& begun : next) {
-    if (!begun.feed) begun.feed = std::visit([](const auto& made_of) { return make_feed(made_of); }, begun.config);
+    if (!begun.feed)
+      begun.feed = std::visit([&](const auto& made_of) { return make_feed(made_of, around); }, begun.config);
   }
   return next;
 }
@@ -64,8 +71,9 @@ std::vector<Running> renewed(std::vector<Running> running, const settings::feeds
 /// The thread, and what it shares with its owner. Detached if a feed does not end in time.
 class Feeds::Thread {
  public:
-  explicit Thread(const settings::feeds::Config& config) : shared_(std::make_shared<Shared>()) {
+  Thread(const settings::feeds::Config& config, Surroundings around) : shared_(std::make_shared<Shared>()) {
     shared_->config = config;
+    shared_->around = std::move(around);
     std::thread([shared = shared_] {
       contain("the feeds", [&shared] { run(*shared); });
       leave(*shared);
@@ -105,6 +113,7 @@ class Feeds::Thread {
     std::shared_ptr<const values::Moment> moment;   ///< null: sent already
     std::optional<settings::feeds::Config> config;  ///< nullopt: in use already
     std::vector<Status> status;
+    Surroundings around;  ///< never changes
     bool is_ending = false, is_over = false;
   };
 
@@ -125,7 +134,7 @@ class Feeds::Thread {
       const bool is_ending = shared.is_ending;
       lock.unlock();
 
-      if (config) feeds = renewed(std::move(feeds), *config);
+      if (config) feeds = renewed(std::move(feeds), *config, shared.around);
       for (const Running& running : feeds) {
         if (moment) contain("a feed", [&] { running.feed->send(*moment); });
       }
@@ -137,7 +146,7 @@ class Feeds::Thread {
         shared.status = std::move(status);
       }
       if (is_ending) {
-        feeds = renewed(std::move(feeds), {});
+        feeds = renewed(std::move(feeds), {}, shared.around);
         return;
       }
     }
@@ -146,10 +155,24 @@ class Feeds::Thread {
   std::shared_ptr<Shared> shared_;
 };
 
-Feeds::Feeds(const settings::feeds::Config& config) {
+/// Ends the calls of a thread that is left to itself.
+struct Feeds::Gate {
+  std::mutex mutex;
+  std::function<void(const std::string& scene, bool shown)> show_scene;
+};
+
+Feeds::Feeds(const settings::feeds::Config& config, Surroundings around)
+    : around_(std::move(around)), gate_(std::make_shared<Gate>()) {
+  gate_->show_scene = std::exchange(around_.show_scene, [gate = gate_](const std::string& scene, bool shown) {
+    const std::lock_guard lock(gate->mutex);
+    if (gate->show_scene) gate->show_scene(scene, shown);
+  });
   change(config);
 }
-Feeds::~Feeds() = default;
+Feeds::~Feeds() {
+  const std::lock_guard lock(gate_->mutex);
+  gate_->show_scene = nullptr;
+}
 
 bool Feeds::is_empty() const noexcept {
   return thread_ == nullptr;
@@ -165,7 +188,7 @@ void Feeds::change(const settings::feeds::Config& config) {
   } else if (thread_) {
     thread_->change(config);
   } else {
-    thread_ = std::make_unique<Thread>(config);
+    thread_ = std::make_unique<Thread>(config, around_);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "daemon/feeds/feed.hpp"
+#include "daemon/feeds/surroundings.hpp"
 #include "daemon/settings/feeds/feeds.hpp"
 #include "daemon/values/moment.hpp"
 
@@ -14,7 +15,7 @@ namespace yuragi::daemon::feeds {
 /// from the I/O thread.
 class Feeds {
  public:
-  explicit Feeds(const settings::feeds::Config& config);
+  explicit Feeds(const settings::feeds::Config& config, Surroundings around = {});
   /// Sends what has to be sent last, for at most a second.
   ~Feeds();
   Feeds(const Feeds&) = delete;
@@ -33,6 +34,9 @@ class Feeds {
 
  private:
   class Thread;
+  struct Gate;
+  Surroundings around_;
+  std::shared_ptr<Gate> gate_;
   std::unique_ptr<Thread> thread_;  ///< null: nothing is configured
 };
 

@@ -84,9 +84,11 @@ void leave_out_what_acts_outside(settings::Config& config, std::vector<std::stri
   config.stream = own.stream;
   config.http = own.http;
   config.alerts.clear();
-  if (!config.lists.empty()) remarks.push_back("its feeds to other programs are not used");
+  if (!config.lists.empty() || !config.feeds.mqtt.host.empty())
+    remarks.push_back("its feeds to other programs are not used");
   config.lists.clear();
   config.feeds = {};
+  config.by_name.at("mqtt") = own.by_name.at("mqtt");
 }
 
 /// Returns true if this sensor has a reading from a log time on.

@@ -40,11 +40,13 @@
 #include "daemon/service/service_manager.hpp"
 #include "daemon/settings/config_file.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
+#include "daemon/state/attention.hpp"
 #include "daemon/stream/tcp_stream.hpp"
 #include "daemon/values/moment_maker.hpp"
 #include "daemon/web/access.hpp"
 #include "daemon/web/guide.hpp"
 #include "daemon/web/web_server.hpp"
+#include "engine/base/address.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
@@ -117,6 +119,13 @@ Norms norms_of(const settings::ShapingConfig& shaping) {
   return norms;
 }
 
+/// The page's address for other machines. `endpoint`: where it listens.
+std::string page_url(const std::string& endpoint) {
+  Address address = parse_address(endpoint).value();
+  if (address.host == "0.0.0.0" || address.host == "::") address.host = asio::ip::host_name();
+  return "http://" + to_string(address) + "/";
+}
+
 wire::Lateness lateness_of(const animation::RecentLateness& recent) {
   return {.p50_s = recent.percentile_s(0.5), .p99_s = recent.percentile_s(0.99), .max_s = recent.max_s()};
 }
@@ -171,7 +180,7 @@ class Service::Io {
       alerts_.emplace(config.alerts, asio::ip::host_name(), settings::state_file(options.config_file, "alerts.json"),
                       clock_.now());
     }
-    feeds_.emplace(config.feeds);
+    feeds_.emplace(config.feeds, surroundings());
     if (options.record) {
       recorder_ = make_recorder(config, *options.record);
       hub_.listen_to_quantities([this](std::size_t sensor, const wind::StationQuantities& quantities) {
@@ -470,6 +479,21 @@ class Service::Io {
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
 
+  /// Feeds show and hide scenes by a right of their own.
+  feeds::Surroundings surroundings() {
+    return {.page_url = web_ ? page_url(web_->local_endpoint()) : std::string(),
+            .show_scene = [this](const std::string& scene, bool shown) {
+              asio::post(io_, [this, scene, shown] { show_scene({.scene = scene, .shown = shown}); });
+            }};
+  }
+
+  void show_scene(const wire::Control& control) {
+    if (!animation_) return;
+    parameters_.note_change();
+    const wire::ControlReply reply = director_.handle_permitted(control);
+    if (!reply.done) spdlog::warn("a feed's command: {}", reply.message);
+  }
+
   std::unique_ptr<recording::Recorder> make_recorder(const settings::Config& config,
                                                      const std::filesystem::path& file) const;
   static recording::Info recording_info(const settings::Config& config, Instant started);
@@ -584,6 +608,10 @@ class Service::Io {
       manager_.report_status(status);
       report_ready();
       if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
+      if (feeds_ && !feeds_->is_empty()) {
+        moments_.set_health({.alerts = alerts_ ? alerts_->states() : std::vector<values::AlertState>(),
+                             .needs_attention = !state::needs_attention(status).empty()});
+      }
     });
 
     status_timer_.expires_after(kStatusInterval);

@@ -229,7 +229,7 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   }
   next.outputs = wanted.outputs;
   compare_feeds(comparison, running, wanted);
-  plan.changes_feeds = next.feeds != wanted.feeds;
+  plan.changes_feeds = running.feeds != wanted.feeds;
   next.lists = wanted.lists;
   next.feeds = wanted.feeds;
   next.clock = wanted.clock;

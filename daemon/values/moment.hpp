@@ -42,6 +42,20 @@ struct Names {
 /// The place of a name; nullopt: it is not there.
 std::optional<std::size_t> index_of(std::span<const std::string> names, std::string_view name) noexcept;
 
+/// An [[alert]] of the configuration.
+struct AlertState {
+  std::string name;
+  bool is_on = false;
+  friend bool operator==(const AlertState&, const AlertState&) = default;
+};
+
+/// How the daemon is.
+struct Health {
+  std::vector<AlertState> alerts;
+  bool needs_attention = false;
+  friend bool operator==(const Health&, const Health&) = default;
+};
+
 /// Everything that feeds send of one tick. Immutable once published; shared by all threads that send it.
 struct Moment {
   std::uint64_t tick = 0;  ///< of the wind; counts from the start, without gaps
@@ -56,6 +70,7 @@ struct Moment {
   std::vector<double> opacities = {};                         ///< of the scenes; empty: there are none
   std::vector<std::vector<double>> grids = {};                ///< of the shaped wind, a value for each point
   double openness = 1.0;                                      ///< of the opening hours; 0: closed, 1: open
+  std::shared_ptr<const Health> health = std::make_shared<const Health>();
 
   const Readout& wind(Wind which) const noexcept { return which == Wind::kShaped ? shaped : real; }
   std::span<const Readout> places(Wind which) const noexcept {

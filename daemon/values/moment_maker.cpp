@@ -105,6 +105,10 @@ void MomentMaker::set_scenes(std::vector<std::string> names) {
   rename(all);
 }
 
+void MomentMaker::set_health(Health health) {
+  if (health != *health_) health_ = std::make_shared<const Health>(std::move(health));
+}
+
 std::shared_ptr<const Moment> MomentMaker::make(const Tick& tick, std::vector<SensorValue> sensors,
                                                 std::vector<double> opacities) {
   const auto measure = [&tick](Side& side, const wind::State& state, const NormScale& scale) {
@@ -121,6 +125,7 @@ std::shared_ptr<const Moment> MomentMaker::make(const Tick& tick, std::vector<Se
   moment->shaped = measure(shaped_, tick.shaped.state, tick.shaped_scale);
   moment->real = measure(real_, tick.real.state, tick.real_scale);
   moment->names = names_;
+  moment->health = health_;
   moment->sensors = std::move(sensors);
   moment->opacities = std::move(opacities);
   moment->openness = tick.openness;

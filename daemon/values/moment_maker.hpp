@@ -50,6 +50,7 @@ class MomentMaker {
 
   void set_sensors(std::vector<std::string> names);
   void set_scenes(std::vector<std::string> names);
+  void set_health(Health health);
 
  private:
   /// The meters of one of the winds.
@@ -78,6 +79,7 @@ class MomentMaker {
   bool with_real_ = false;
   Side shaped_, real_;
   std::shared_ptr<const Names> names_ = std::make_shared<const Names>();
+  std::shared_ptr<const Health> health_ = std::make_shared<const Health>();
   std::uint64_t tick_ = 0;
   double time_s_ = 0.0;
 };

@@ -27,6 +27,11 @@ bool Interruption::is_set() const noexcept {
   return wait(-1, WaitFor::kReadable, Nanoseconds::zero()) == WaitEnd::kInterrupted;
 }
 
+void Interruption::clear() noexcept {
+  eventfd_t ignored = 0;
+  eventfd_read(event_, &ignored);
+}
+
 WaitEnd Interruption::wait(int descriptor, WaitFor what, Nanoseconds timeout) const noexcept {
   const short events = what == WaitFor::kReadable ? POLLIN : POLLOUT;
   std::array<pollfd, 2> waits = {pollfd{event_, POLLIN, 0}, pollfd{descriptor, events, 0}};

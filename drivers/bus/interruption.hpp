@@ -28,6 +28,8 @@ class Interruption {
 
   void set() noexcept;
   bool is_set() const noexcept;
+  /// Later waits are not ended any more, until it is set again.
+  void clear() noexcept;
 
   /// Waits for `descriptor`, or, if that is -1, for the interruption alone.
   WaitEnd wait(int descriptor, WaitFor what, Nanoseconds timeout) const noexcept;

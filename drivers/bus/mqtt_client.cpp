@@ -5,6 +5,7 @@
 #include "drivers/bus/mqtt_client.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <deque>
 #include <span>
@@ -85,6 +86,7 @@ class MosquittoClient final : public MqttClient {
   void disconnect() noexcept override {
     client_.reset();
     messages_.clear();
+    is_accepted_ = false;
     agreed_topics_ = 0;
     refusal_.clear();
   }
@@ -99,16 +101,34 @@ class MosquittoClient final : public MqttClient {
         trouble_ = explain(error);
         return MqttStatus::kLost;
       }
-      if (interruption_.is_set()) return MqttStatus::kInterrupted;
+      const bool was_woken = take_wake();
+      if (is_interrupted_) return MqttStatus::kInterrupted;
+      if (was_woken) return MqttStatus::kSilence;
     }
     message = std::move(messages_.front());
     messages_.pop_front();
     return MqttStatus::kMessage;
   }
 
+  MqttSending publish(const MqttMessage& message) override {
+    if (!client_) return MqttSending::kRefused;
+    if (mosquitto_want_write(client_.get())) return MqttSending::kBusy;
+    const int error =
+        mosquitto_publish(client_.get(), nullptr, message.topic.c_str(), static_cast<int>(message.payload.size()),
+                          message.payload.data(), kAtMostOnce, message.is_retained);
+    return error == MOSQ_ERR_SUCCESS ? MqttSending::kSent : MqttSending::kRefused;
+  }
+
+  void leave() noexcept override {
+    if (client_) mosquitto_disconnect(client_.get());
+    disconnect();
+  }
+
   std::string trouble() const override { return trouble_; }
+  void wake() noexcept override { wakes_.set(); }
   void interrupt() noexcept override {
-    interruption_.set();
+    is_interrupted_ = true;
+    wakes_.set();
     lookup_.interrupt();
   }
 
@@ -117,13 +137,14 @@ class MosquittoClient final : public MqttClient {
   Result<void, Failure> connect_to(const std::string& host) {
     if (const int error = begin_to_connect(host); error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
     const auto deadline = MqttClock::now() + wanted_.connect_timeout;
-    while (agreed_topics_ < wanted_.topics.size()) {
+    while (!is_accepted_ || agreed_topics_ < wanted_.topics.size()) {
       const Nanoseconds remaining = deadline - MqttClock::now();
       if (remaining <= Nanoseconds::zero()) {
         return Failure{describe(wanted_) + " does not reply: check its address, the network, and that it is running"};
       }
       const int error = turn(std::min(remaining, kHousekeeping));
-      if (interruption_.is_set()) return Failure{"interrupted"};
+      take_wake();
+      if (is_interrupted_) return Failure{"interrupted"};
       if (!refusal_.empty()) return Failure{refusal_};
       if (error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
     }
@@ -139,6 +160,13 @@ class MosquittoClient final : public MqttClient {
     if (!wanted_.user.empty()) {
       mosquitto_username_pw_set(client_.get(), wanted_.user.c_str(),
                                 wanted_.password.is_empty() ? nullptr : wanted_.password.reveal().c_str());
+    }
+    mosquitto_int_option(client_.get(), MOSQ_OPT_TCP_NODELAY, 1);
+    if (wanted_.will) {
+      const MqttMessage& will = *wanted_.will;
+      const int error = mosquitto_will_set(client_.get(), will.topic.c_str(), static_cast<int>(will.payload.size()),
+                                           will.payload.data(), kAtMostOnce, will.is_retained);
+      if (error != MOSQ_ERR_SUCCESS) return error;
     }
     if (wanted_.uses_tls) {
       const char* const file = wanted_.ca_file.empty() ? nullptr : wanted_.ca_file.c_str();
@@ -157,8 +185,9 @@ class MosquittoClient final : public MqttClient {
   int turn(Nanoseconds timeout) {
     const int socket = mosquitto_socket(client_.get());
     if (socket < 0) return MOSQ_ERR_NO_CONN;
+    if (is_interrupted_) return MOSQ_ERR_SUCCESS;
     const bool wants_to_write = mosquitto_want_write(client_.get());
-    const WaitEnd end = interruption_.wait(socket, wants_to_write ? WaitFor::kWritable : WaitFor::kReadable, timeout);
+    const WaitEnd end = wakes_.wait(socket, wants_to_write ? WaitFor::kWritable : WaitFor::kReadable, timeout);
     if (end == WaitEnd::kInterrupted) return MOSQ_ERR_SUCCESS;
     int error = MOSQ_ERR_SUCCESS;
     if (end == WaitEnd::kReady && wants_to_write) error = mosquitto_loop_write(client_.get(), 1);
@@ -166,6 +195,13 @@ class MosquittoClient final : public MqttClient {
     if (error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_misc(client_.get());
     thrown_.rethrow();
     return error;
+  }
+
+  /// Returns true if wake() has been called since.
+  bool take_wake() noexcept {
+    if (!wakes_.is_set()) return false;
+    wakes_.clear();
+    return true;
   }
 
   static MosquittoClient& self_of(void* self) { return *static_cast<MosquittoClient*>(self); }
@@ -187,6 +223,7 @@ class MosquittoClient final : public MqttClient {
                              mosquitto_connack_string(reply));
       return;
     }
+    is_accepted_ = true;
     for (const std::string& topic : wanted_.topics) {
       mosquitto_subscribe(client_.get(), nullptr, topic.c_str(), kAtMostOnce);
     }
@@ -236,10 +273,12 @@ class MosquittoClient final : public MqttClient {
   MqttSubscription wanted_;
   HostLookup lookup_;
   std::size_t turn_ = 0;  ///< which of the broker's addresses is tried
-  Interruption interruption_;
+  Interruption wakes_;    ///< ends a wait once
+  std::atomic<bool> is_interrupted_ = false;
   std::unique_ptr<mosquitto, FreeMosquitto> client_;
   std::deque<MqttMessage> messages_;
   CallbackException thrown_;
+  bool is_accepted_ = false;
   std::size_t agreed_topics_ = 0;
   std::string refusal_;  ///< by the broker
   std::string trouble_;

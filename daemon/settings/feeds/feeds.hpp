@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "daemon/settings/feeds/dmx.hpp"
+#include "daemon/settings/feeds/mqtt.hpp"
 #include "daemon/settings/feeds/osc.hpp"
 #include "daemon/values/grid.hpp"
 #include "daemon/values/moment.hpp"
@@ -11,11 +12,12 @@
 
 namespace yuragi::daemon::settings::feeds {
 
-/// What is sent to other programs: the typed form of the lists of list_tables().
+/// What is sent to other programs: the typed form of the lists of list_tables(), and of [mqtt].
 struct Config {
   std::vector<values::Place> places;
   std::vector<Osc> osc;
   std::vector<Dmx> dmx = {};
+  Mqtt mqtt;  ///< of its own table
 
   friend bool operator==(const Config&, const Config&) = default;
 
