@@ -327,6 +327,7 @@ class Service::Io {
     if (http_.listen.empty()) return;
     try {
       web_ = std::make_unique<web::Server>(web_settings());
+      web_->publish_scenes(stream_.scenes());
     } catch (const FailureError& error) {
       page_trouble_ = "the page and HTTP are not served: " + std::string(error.what());
     }
@@ -534,14 +535,16 @@ class Service::Io {
     const values::NormScale real_scale =
         is_site_known ? values::NormScale{.median_m_s = shaping.site_median_m_s, .strong_m_s = shaping.site_strong_m_s}
                       : norms_.unknown;
-    feeds_->publish(moments_.make({.real = real,
-                                   .shaped = shaped,
-                                   .real_scale = real_scale,
-                                   .shaped_scale = norms_.shaped.value_or(real_scale),
-                                   .time = now,
-                                   .dt_s = dt_s,
-                                   .openness = shaping.openness},
-                                  hub_.values(), opacities_));
+    const auto moment = moments_.make({.real = real,
+                                       .shaped = shaped,
+                                       .real_scale = real_scale,
+                                       .shaped_scale = norms_.shaped.value_or(real_scale),
+                                       .time = now,
+                                       .dt_s = dt_s,
+                                        .openness = shaping.openness},
+                                      hub_.values(), opacities_);
+    feeds_->publish(moment);
+    if (web_) web_->publish_moment(moment);
   }
 
   /// Of the scenes in the newest frame; none while scenes are exchanged, when their names are not those of the frame.
@@ -588,8 +591,13 @@ class Service::Io {
   void pass_on_frame() {
     const animation::PublishedFrame* frame = loop_->take_frame();
     if (frame == nullptr) return;
-    if (auto scenes = scenes_->new_scenes(frame->generation)) stream_.publish_scenes(std::move(scenes));
-    stream_.publish(std::make_shared<const wire::Bytes>(frame->bytes));
+    if (const auto scenes = scenes_->new_scenes(frame->generation)) {
+      stream_.publish_scenes(scenes);
+      if (web_) web_->publish_scenes(scenes);
+    }
+    const auto bytes = std::make_shared<const wire::Bytes>(frame->bytes);
+    stream_.publish(bytes);
+    if (web_) web_->publish(bytes);
     note_opacities(*frame);
     exchange_scenes();
     is_up_ = true;

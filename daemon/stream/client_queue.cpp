@@ -24,7 +24,8 @@ std::string reason_text(Overdue why, const ClientLimits& limits) {
 
 ClientQueue::ClientQueue(const ClientLimits& limits, SharedBytes hello, MonoTime now)
     : limits_(limits), connected_(now), asked_(now), moved_(now) {
-  setup_.push_back(std::move(hello));
+  is_greeted_ = hello == nullptr;
+  if (hello) setup_.push_back(std::move(hello));
 }
 
 void ClientQueue::subscribe(const Wanted& wanted, SharedBytes scenes, SharedBytes newest_frame,

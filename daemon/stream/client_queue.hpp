@@ -46,7 +46,7 @@ struct Wanted {
 /// Thread-safe: no.
 class ClientQueue {
  public:
-  /// For a client that connected at `now`; `hello` is the first message.
+  /// For a client that connected at `now`; `hello` is the first message; null: there is none.
   ClientQueue(const ClientLimits& limits, SharedBytes hello, MonoTime now);
 
   /// The client subscribes. Sends those that are not null, in this order: scenes, the newest sensors, the newest frame.

@@ -47,6 +47,9 @@ class PoseViews {
   /// An encoded wire::Frame.
   void set_frame(SharedBytes frame);
 
+  /// What was set last; null: nothing yet.
+  const SharedBytes& scenes() const noexcept { return scenes_; }
+
   std::shared_ptr<PoseView> view(const wire::Thinning& thinning);
 
   /// Returns why a client cannot have this Thinning of the scenes, for a person: it names one that does not exist, with

@@ -360,6 +360,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
 
   const std::string& endpoint() const { return endpoint_; }
   const ClientCounts& counts() const { return feed_->counts; }
+  const SharedBytes& scenes() const { return feed_->poses.scenes(); }
 
   std::size_t client_count() const {
     return static_cast<std::size_t>(
@@ -538,6 +539,9 @@ void TcpStream::publish_scenes(SharedBytes scenes) {
 }
 void TcpStream::publish_sensors(SharedBytes here, SharedBytes elsewhere) {
   server_->publish_sensors(std::move(here), std::move(elsewhere));
+}
+SharedBytes TcpStream::scenes() const {
+  return server_->scenes();
 }
 std::uint8_t TcpStream::given_up() const {
   return server_->given_up();

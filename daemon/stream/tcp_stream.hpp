@@ -86,6 +86,8 @@ class TcpStream final : public Transport {
   void publish(SharedBytes frame) override;
   void publish_scenes(SharedBytes scenes) override;
   void publish_sensors(SharedBytes here, SharedBytes elsewhere) override;
+  /// The scenes that were published last, encoded.
+  SharedBytes scenes() const;
   std::size_t client_count() const override;
   bool has_untrusted_clients() const override;
   /// The most of all clients' wire::Display.

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "daemon/stream/tcp_listening.hpp"
+#include "daemon/web/http_upgrade.hpp"
 #include "engine/base/address.hpp"
 #include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
@@ -110,6 +111,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .forwarded_for = text_of(message["X-Forwarded-For"]),
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
         .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
+        .is_websocket = parser_->upgrade() && beast::iequals(message[http::field::upgrade], "websocket"),
         .client = client_};
     ask(request);
   }
@@ -127,6 +129,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void write(HttpResponse response) {
     if (has_ended_) return;
+    if (response.take_over) return hand_over(response.take_over);
     message_ = {};
     message_.version(11);
     message_.result(response.status);
@@ -145,6 +148,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
       if (error || self->has_ended_) return self->end();
       self->go_on([&] { self->is_last_ ? self->hang_up() : self->read(); });
     });
+  }
+
+  void hand_over(const std::function<void(HttpUpgrade&)>& take_over) {
+    // RFC 6455, 4.1: a client waits for the answer.
+    if (buffer_.size() > 0) {
+      is_last_ = true;
+      return write(plain(400, "bytes follow the request for a WebSocket before it is answered"));
+    }
+    stream_.expires_never();
+    HttpUpgrade upgrade{.socket = stream_.release_socket(), .request = parser_->release(), .client = client_};
+    has_ended_ = true;
+    contain("opening a WebSocket", [&] { take_over(upgrade); });
   }
 
   /// Closes once the client has: closing before it does would take the answer from it.

@@ -33,14 +33,19 @@ struct HttpRequest {
   std::string forwarded_for = {};  ///< X-Forwarded-For: for whom a proxy sends it
   bool is_forwarded = false;       ///< a proxy states that it sends it for another client
   bool is_https = false;           ///< a proxy states that it received it by HTTPS
+  bool is_websocket = false;       ///< it asks for a WebSocket
   stream::Peer client = {};
 };
+
+struct HttpUpgrade;  // http_upgrade.hpp
 
 struct HttpResponse {
   unsigned status = 200;
   std::string content_type = "application/json";
   std::string body = {};
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further fields of the header
+  /// Takes over the connection of a request for a WebSocket, in place of an answer. It then has no place of HTTP's.
+  std::function<void(HttpUpgrade& upgrade)> take_over = {};
 };
 
 /// Call it once, on the thread of the server's context, at once or later.

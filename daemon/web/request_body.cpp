@@ -16,12 +16,13 @@ constexpr int kDeepest = 4;  ///< of a body; deeper ones are no request of ours
 /// Takes the keys of an object one by one. The first mistake is kept.
 class Body {
  public:
+  explicit Body(nlohmann::json object) : object_(std::move(object)) {}
   explicit Body(std::string_view text) {
     const auto is_shallow = [](int depth, nlohmann::json::parse_event_t /*event*/, nlohmann::json& /*parsed*/) {
       return depth <= kDeepest;
     };
     object_ = nlohmann::json::parse(text, is_shallow, false);
-    if (!object_.is_object()) mistake_ = "the body must be a JSON object";
+    if (!object_.is_object()) mistake_ = "this is not a JSON object";
   }
 
   std::string text(const char* key, std::string otherwise) {
@@ -44,6 +45,26 @@ class Body {
       return value->get<double>();
     refuse(key, fmt::format("a number from {} to {}", least, most));
     return otherwise;
+  }
+  std::vector<std::string> texts(const char* key, std::size_t most) {
+    const nlohmann::json* value = take(key);
+    if (value == nullptr) return {};
+    std::vector<std::string> all;
+    bool is_sound = value->is_array() && value->size() <= most;
+    for (const nlohmann::json& each : is_sound ? *value : nlohmann::json::array()) {
+      is_sound = is_sound && each.is_string() && each.get_ref<const std::string&>().size() <= wire::kMaxTextBytes;
+      if (is_sound) all.push_back(each);
+    }
+    if (!is_sound) refuse(key, fmt::format("a list of at most {} texts", most));
+    return all;
+  }
+  /// An object below; nullopt: there is none.
+  std::optional<Body> below(const char* key) {
+    const nlohmann::json* value = take(key);
+    if (value == nullptr) return std::nullopt;
+    if (value->is_object()) return Body(*value);
+    refuse(key, "an object");
+    return std::nullopt;
   }
   void require(bool holds, const char* what) {
     if (!holds && !mistake_) mistake_ = what;
@@ -110,6 +131,24 @@ Result<Revocation, Failure> revocation_of(std::string_view json) {
                "revoke: is missing: the id of a session, which `yuragi token --sessions` lists");
   if (auto mistake = body.mistake()) return std::move(*mistake);
   return revocation;
+}
+
+Result<SocketWish, Failure> socket_wish_of(std::string_view json) {
+  Body body(json);
+  SocketWish wish;
+  wish.wind_hz = body.number("wind", 0.0, 0.0, SocketWish::kMaxWindRate_hz);
+  wish.status_hz = body.number("status", 0.0, 0.0, SocketWish::kMaxStatusRate_hz);
+  wish.places = body.texts("places", SocketWish::kMaxPlaces);
+  if (auto stream = body.below("stream")) {
+    wish.stream.emplace();
+    wish.stream->takes_new_scenes = true;
+    wish.stream->thinning.scenes = stream->texts("scenes", wire::kMaxScenes);
+    wish.stream->thinning.every = static_cast<std::uint32_t>(stream->number("every", 1.0, 1.0, wire::kMaxEvery));
+    wish.stream->rate_hz = stream->number("rate", 0.0, 0.0, wire::kMaxRate_hz);
+    if (auto mistake = stream->mistake()) return Failure{"stream: " + mistake->message, FailureKind::kUsage};
+  }
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return wish;
 }
 
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {

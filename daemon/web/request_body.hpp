@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/base/result.hpp"
 #include "engine/wire/wire.hpp"
@@ -29,6 +31,22 @@ struct Revocation {
 
 /// {"revoke": "3f9a0c77e1"}
 Result<Revocation, Failure> revocation_of(std::string_view json);
+
+/// What the client of a WebSocket wants to be sent.
+struct SocketWish {
+  static constexpr double kMaxWindRate_hz = 240.0;
+  static constexpr double kMaxStatusRate_hz = 2.0;
+  static constexpr std::size_t kMaxPlaces = 64;
+
+  double wind_hz = 0.0;    ///< the values of the wind; 0: none
+  double status_hz = 0.0;  ///< the daemon's state; 0: none
+  std::vector<std::string> places = {};
+  std::optional<wire::Subscribe> stream = std::nullopt;  ///< the stream's own messages; nullopt: none
+};
+
+/// {"wind": 60, "status": 2, "places": [names], "stream": {"scenes": [names], "every": 8, "rate": 30}}; each key can be
+/// left out.
+Result<SocketWish, Failure> socket_wish_of(std::string_view json);
 
 /// {"action": "pause", "resume", "step", "seek" or "rate", "sensor": name, "count": 1, "place": "+30", "rate": 1}
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json);

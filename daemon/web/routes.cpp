@@ -56,8 +56,7 @@ Answer metrics(const HttpRequest& /*request*/, const Facts& facts) {
                                            facts.faults ? facts.faults() : FaultCounts{})};
 }
 
-Answer status(const HttpRequest& /*request*/, const Facts& facts) {
-  if (const auto why = silence_of(facts)) return no_news(*why);
+ordered_json status_json(const Facts& facts) {
   const std::vector<std::string> attention = state::needs_attention(*facts.sensors);
   ordered_json content = {{"verdict", attention.empty() ? "well" : "attention"},
                           {"attention", attention},
@@ -66,7 +65,18 @@ Answer status(const HttpRequest& /*request*/, const Facts& facts) {
                           {"software", facts.software},
                           {"tick_rate_hz", facts.tick_rate_hz}};
   content.update(state::sensors_json(*facts.sensors));
-  return json_response(content);
+  return content;
+}
+Answer status(const HttpRequest& /*request*/, const Facts& facts) {
+  if (const auto why = silence_of(facts)) return no_news(*why);
+  return json_response(status_json(facts));
+}
+
+Answer socket(const HttpRequest& request, const Facts& /*facts*/) {
+  if (request.is_websocket) return SocketOpening{};
+  HttpResponse refusal = problem(426, "A WebSocket", "/ws is for WebSockets: new WebSocket(\"ws://HOST:PORT/ws\")");
+  refusal.fields.push_back({"Upgrade", "websocket"});
+  return refusal;
 }
 
 Answer openapi(const HttpRequest& /*request*/, const Facts& /*facts*/) {
@@ -173,6 +183,7 @@ constexpr std::array kRoutes = {
     Route{"GET", "/metrics", metrics},
     Route{"GET", "/api/v1/openapi.json", openapi},
     Route{"GET", "/api/v1/status", status},
+    Route{"GET", "/ws", socket},
     Route{"GET", "/api/v1/scenes", scenes},
     Route{"POST", "/api/v1/scenes", change_scene},
     Route{"GET", "/api/v1/player", players},
@@ -210,6 +221,11 @@ std::optional<HttpResponse> method_refusal(const HttpRequest& request) {
   HttpResponse refusal = problem(405, "Method not allowed", request.path + " takes " + allowed);
   refusal.fields.push_back({"Allow", allowed});
   return refusal;
+}
+
+std::optional<std::string> status_message(const Facts& facts) {
+  if (silence_of(facts)) return std::nullopt;
+  return json_text(ordered_json{{"status", status_json(facts)}});
 }
 
 Answer answer_to(const HttpRequest& request, const Facts& facts) {

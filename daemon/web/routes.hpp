@@ -46,7 +46,10 @@ struct HistoryQuestion {
   unsigned hours = 0;
 };
 
-using Answer = std::variant<HttpResponse, Question, Pairing, Revocation, HistoryQuestion>;
+/// A request for a WebSocket, for who may read.
+struct SocketOpening {};
+
+using Answer = std::variant<HttpResponse, Question, Pairing, Revocation, HistoryQuestion, SocketOpening>;
 
 /// What those may do, too, who are let in nowhere else yet.
 inline constexpr std::string_view kPairPath = "/api/v1/pair";
@@ -71,6 +74,9 @@ std::span<const Route> routes();
 
 /// Returns the refusal (405) of a method that a path does not take, or nullopt. HEAD counts as GET. Pure.
 std::optional<HttpResponse> method_refusal(const HttpRequest& request);
+
+/// The state of /api/v1/status as the message of a WebSocket: {"status": {...}}; nullopt: nothing is known. Pure.
+std::optional<std::string> status_message(const Facts& facts);
 
 /// Answers a request that is_known_host() and, if it changes something, is_same_origin() has let through. Pure.
 Answer answer_to(const HttpRequest& request, const Facts& facts);

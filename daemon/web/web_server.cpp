@@ -1,6 +1,8 @@
 #include "daemon/web/web_server.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -18,6 +20,7 @@
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
+#include "daemon/web/sockets.hpp"
 #include "daemon/web/wind_memory.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/known_host.hpp"
@@ -41,6 +44,12 @@ std::optional<News> news_of(const stream::SharedBytes& bytes) {
   if (!message || !std::holds_alternative<wire::Sensors>(*message)) return std::nullopt;
   return News{std::get<wire::Sensors>(std::move(*message)), steady_clock::now()};
 }
+
+/// What the WebSockets are sent next; a newer one replaces it.
+struct Newest {
+  stream::SharedBytes scenes, frame;
+  std::shared_ptr<const values::Moment> moment;
+};
 
 double mono_s() {
   return seconds(steady_clock::now().time_since_epoch());
@@ -97,6 +106,9 @@ class Server::Thread {
       : settings_(std::move(settings)),
         guide_(settings_.guide.empty() ? Guide() : Guide(settings_.guide)),
         pairings_file_(settings_.pairings_file),
+        sockets_(*io_, {.limits = settings_.sockets,
+                        .tick_rate_hz = settings_.tick_rate_hz,
+                        .is_token = [this](const std::string& token) { return access_ && access_->is_token(token); }}),
         server_(std::make_unique<HttpServer>(
             *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
             [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
@@ -115,16 +127,31 @@ class Server::Thread {
   Thread& operator=(const Thread&) = delete;
 
   const std::string& endpoint() const { return endpoint_; }
-  std::size_t client_count() const { return clients_; }
+  std::size_t client_count() const { return clients_ + sockets_.client_count(); }
 
-  void publish(stream::SharedBytes here, stream::SharedBytes elsewhere) {
+  void publish_frame(stream::SharedBytes frame) {
+    if (sockets_.wants_frames()) hand_over([&](Newest& newest) { newest.frame = std::move(frame); });
+  }
+  void publish_scenes(stream::SharedBytes scenes) {
+    hand_over([&](Newest& newest) {
+      newest.scenes = std::move(scenes);
+      newest.frame.reset();  // of the scenes before
+    });
+  }
+  void publish_moment(std::shared_ptr<const values::Moment> moment) {
+    if (sockets_.wants_wind()) hand_over([&](Newest& newest) { newest.moment = std::move(moment); });
+  }
+  void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) {
     asio::post(*io_, [this, here = std::move(here), elsewhere = std::move(elsewhere)] {
+      sockets_.publish_sensors(here, elsewhere);
       if (auto news = news_of(here)) {
         wind_.add(mono_s(), news->sensors);
         here_ = std::move(news);
       }
       if (auto news = news_of(elsewhere)) elsewhere_ = std::move(news);
       clients_ = server_ ? server_->client_count() : 0;
+      const bool is_wanted = sockets_.wants_status();
+      sockets_.publish_status(is_wanted ? status_text(true) : nullptr, is_wanted ? status_text(false) : nullptr);
     });
   }
 
@@ -136,6 +163,7 @@ class Server::Thread {
     if (!thread_.joinable()) return;
     asio::post(*io_, [this] {
       server_.reset();
+      sockets_.close();
       work_.reset();
       io_->stop();
     });
@@ -143,6 +171,28 @@ class Server::Thread {
   }
 
  private:
+  /// Sets what is next; the thread takes it when it comes to it, so that nothing piles up if it is late.
+  template <class Set>
+  void hand_over(Set&& set) {
+    {
+      const std::lock_guard lock(newest_mutex_);
+      std::forward<Set>(set)(newest_);
+      if (!std::exchange(is_taken_, false)) return;
+    }
+    asio::post(*io_, [this] { take_newest(); });
+  }
+  void take_newest() {
+    Newest newest;
+    {
+      const std::lock_guard lock(newest_mutex_);
+      newest = std::exchange(newest_, {});
+      is_taken_ = true;
+    }
+    if (newest.scenes) sockets_.publish_scenes(std::move(newest.scenes));
+    if (newest.moment) sockets_.publish_moment(std::move(newest.moment));
+    if (newest.frame) sockets_.publish_frame(std::move(newest.frame));
+  }
+
   void run() {
     while (!contain("a task of the web server", [this] { io_->run(); })) {
     }
@@ -191,22 +241,12 @@ class Server::Thread {
       if (refusal) return reply(std::move(*refusal));
     }
 
-    const auto& news = trusted ? here_ : elsewhere_;
-    const Facts facts{.software = settings_.software,
-                      .address = endpoint_,
-                      .tick_rate_hz = settings_.tick_rate_hz,
-                      .sensors = news ? &news->sensors : nullptr,
-                      .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
-                      .patience_s = seconds(settings_.patience),
-                      .log = settings_.log,
-                      .faults = settings_.faults,
-                      .counts = counts_,
-                      .pairings = &pairings_,
-                      .wind = &wind_,
-                      .mono_s = mono_s(),
-                      .utc_s = utc_s};
-    Answer answer = answer_to(request, facts);
+    Answer answer = answer_to(request, facts_for(trusted, utc_s));
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
+    if (std::holds_alternative<SocketOpening>(answer)) {
+      return open_socket(
+          request, {.is_trusted = trusted, .session = session_shown(request, trust, utc_s), .address = address}, reply);
+    }
     if (const auto* const pairing = std::get_if<Pairing>(&answer)) {
       return reply(pair(pairing->code, request, address, trust, utc_s));
     }
@@ -222,6 +262,51 @@ class Server::Thread {
       };
     }
     ask(std::get<Question>(std::move(answer)), trusted, std::move(reply));
+  }
+
+  /// `is_trusted`: gets what clients of this machine get.
+  Facts facts_for(bool is_trusted, double utc_s) const {
+    const auto& news = is_trusted ? here_ : elsewhere_;
+    return {.software = settings_.software,
+            .address = endpoint_,
+            .tick_rate_hz = settings_.tick_rate_hz,
+            .sensors = news ? &news->sensors : nullptr,
+            .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
+            .patience_s = seconds(settings_.patience),
+            .log = settings_.log,
+            .faults = settings_.faults,
+            .counts = counts_,
+            .pairings = &pairings_,
+            .wind = &wind_,
+            .mono_s = mono_s(),
+            .utc_s = utc_s};
+  }
+
+  /// Null: nothing is known.
+  SharedText status_text(bool is_trusted) const {
+    auto text = status_message(facts_for(is_trusted, seconds(std::chrono::system_clock::now().time_since_epoch())));
+    return text ? std::make_shared<const std::string>(std::move(*text)) : nullptr;
+  }
+
+  bool may_read(const HttpRequest& request) const {
+    return is_same_origin(request.origin, request.host) ||
+           std::ranges::find(settings_.origins, request.origin) != settings_.origins.end();
+  }
+
+  void open_socket(const HttpRequest& request, Sockets::Visitor visitor, const HttpReply& reply) {
+    // A browser lets any page open a WebSocket, and sends it this machine's cookies.
+    if (!may_read(request)) {
+      return reply(problem(403, "Another page's request",
+                           "only pages of this daemon and those of [http] origins may open a WebSocket"));
+    }
+    if (const auto why = sockets_.refusal(request.client)) {
+      HttpResponse refusal = problem(503, "No place", *why);
+      refusal.fields.push_back({"Retry-After", "10"});
+      return reply(std::move(refusal));
+    }
+    HttpResponse opening{.status = 101};
+    opening.take_over = [this, visitor = std::move(visitor)](HttpUpgrade& upgrade) { sockets_.open(upgrade, visitor); };
+    reply(std::move(opening));
   }
 
   HttpResponse pair(const std::string& code, const HttpRequest& request, const std::string& address, const Trust& trust,
@@ -242,6 +327,7 @@ class Server::Thread {
     if (!pairings_.revoke(id))
       return reply(problem(404, "Not known", "there is no session with this id: `yuragi token --sessions` lists all"));
     ++counts_.changes;
+    sockets_.end_session(id);
     log_.info("http: {} revokes the session {}", address, id);
     const auto pending = wait_for_reply(
         std::move(reply),
@@ -311,6 +397,10 @@ class Server::Thread {
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
   std::optional<News> here_, elsewhere_;
   WindMemory wind_;
+  std::mutex newest_mutex_;
+  Newest newest_;         ///< of newest_mutex_
+  bool is_taken_ = true;  ///< of newest_mutex_; false: the thread will take it
+  Sockets sockets_;
   std::unique_ptr<HttpServer> server_;
   const std::string endpoint_;
   std::atomic<std::size_t> clients_ = 0;
@@ -323,10 +413,17 @@ Server::~Server() = default;
 std::string Server::local_endpoint() const {
   return thread_->endpoint();
 }
-void Server::publish(stream::SharedBytes /*frame*/) {}
-void Server::publish_scenes(stream::SharedBytes /*scenes*/) {}
+void Server::publish(stream::SharedBytes frame) {
+  thread_->publish_frame(std::move(frame));
+}
+void Server::publish_scenes(stream::SharedBytes scenes) {
+  thread_->publish_scenes(std::move(scenes));
+}
+void Server::publish_moment(std::shared_ptr<const values::Moment> moment) {
+  thread_->publish_moment(std::move(moment));
+}
 void Server::publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) {
-  thread_->publish(std::move(here), std::move(elsewhere));
+  thread_->publish_sensors(std::move(here), std::move(elsewhere));
 }
 std::size_t Server::client_count() const {
   return thread_->client_count();

@@ -11,8 +11,10 @@
 
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
+#include "daemon/values/moment.hpp"
 #include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
+#include "daemon/web/sockets.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
@@ -29,7 +31,9 @@ struct Settings {
   std::filesystem::path pairings_file = {};
   bool reading_takes_token = false;       ///< nobody reads without it, either; but this machine reads kHealthPath
   std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
+  std::vector<std::string> origins = {};  ///< "https://editor.p5js.org": whose pages may read, too
   stream::AdmissionLimits clients = {};
+  SocketLimits sockets = {};
   std::filesystem::path guide = {};  ///< the folder of the guide as HTML, read by the constructor; empty: none
   std::string software = {};         ///< "yuragi 0.2.0"
   double tick_rate_hz = 0.0;
@@ -50,7 +54,8 @@ struct Settings {
   Nanoseconds patience = std::chrono::seconds(5);
 };
 
-/// The state of the daemon by HTTP, for people, scripts and Prometheus: /healthz, /metrics, /api/v1 (routes.cpp).
+/// The state of the daemon by HTTP, for people, scripts and Prometheus: /healthz, /metrics, /api/v1 (routes.cpp), and
+/// wind, state and poses by WebSocket: /ws (Sockets).
 ///
 /// A thread of its own answers, from what was published last; the caller of publish() hands over a pointer and goes on.
 /// Thread-safe: everything but construction, close() and destruction.
@@ -69,6 +74,8 @@ class Server final : public stream::Transport {
   std::string name() const override { return "http " + local_endpoint(); }
   void publish(stream::SharedBytes frame) override;
   void publish_scenes(stream::SharedBytes scenes) override;
+  /// The values of a tick of the wind. Does nothing while no WebSocket wants them.
+  void publish_moment(std::shared_ptr<const values::Moment> moment);
   void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) override;
   std::size_t client_count() const override;
   /// Clients on other machines get less, and can ask at any time.
