@@ -250,6 +250,8 @@ class Service::Io {
                            .pairings_file = pairings_file(),
                            .reading_takes_token = http_.reading_takes_token,
                            .proxies = http_.proxies,
+                           .origins = http_.origins,
+                           .folder = http_.folder,
                            .guide = web::installed_guide(),
                            .software = with_version("yuragi"),
                            .tick_rate_hz = rate_hz_};
