@@ -1,5 +1,6 @@
 #include "daemon/web/web_server.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -32,6 +33,9 @@ namespace {
 
 namespace asio = boost::asio;
 using std::chrono::steady_clock;
+
+/// New scenes are made, and wait for those that still fade.
+constexpr Nanoseconds kMaxChange = std::chrono::seconds(60);
 
 /// The newest of what was published, decoded.
 struct News {
@@ -354,9 +358,9 @@ class Server::Thread {
 
   void ask(Question question, bool is_local, HttpReply reply) {
     if (!settings_.ask) return reply(problem(503, "Not here", "this daemon accepts no requests"));
-    const auto pending =
-        wait_for_reply(std::move(reply),
-                       problem(503, "No reply", "the daemon does not reply: it hangs, or its machine is overloaded"));
+    const auto pending = wait_for_reply(
+        std::move(reply), problem(503, "No reply", "the daemon does not reply: it hangs, or its machine is overloaded"),
+        question.takes_long ? std::max(settings_.patience, kMaxChange) : settings_.patience);
     // The reply comes on another thread, perhaps when the question has been given up or this object is gone.
     settings_.ask(question.control, is_local,
                   [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
@@ -396,8 +400,11 @@ class Server::Thread {
 
   /// What is waited for, with the answer if it does not come in time.
   std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise) {
+    return wait_for_reply(std::move(reply), std::move(otherwise), settings_.patience);
+  }
+  std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise, Nanoseconds patience) {
     const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
-    pending->given_up.expires_after(settings_.patience);
+    pending->given_up.expires_after(patience);
     pending->given_up.async_wait([pending, otherwise = std::move(otherwise)](const boost::system::error_code& error) {
       if (!error) pending->answer(otherwise);
     });

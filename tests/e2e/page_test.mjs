@@ -305,7 +305,7 @@ test("by WebSocket: each message is shown, and silence is no connection", { time
   const socket = await opened;
   const sensors = [{ ...status.sensors[0], state: "live", speed_m_s: 17.3, direction_deg: 225, age_s: 0.1 }];
   for (const [attention, light] of [[[], "live"], [["the disk is nearly full"], "attention"]]) {
-    socket.send(JSON.stringify({ ...status, sensors, attention, verdict: attention.length === 0 ? "well" : "attention" }));
+    socket.send(JSON.stringify({ status: { ...status, sensors, attention, verdict: attention.length === 0 ? "well" : "attention" } }));
     await page.waitForSelector(`[data-light=${light}]`);
     assert.match(await sentence(page), /^Live: roof, 17\.3 m\/s from the south-west, /);
     assert.equal(await page.textContent("#attention"), attention.join());
