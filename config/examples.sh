@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 bin=$PWD/build/release/bin
 mkdir -p build/examples
 cp -n config/garden.toml config/examples/*.* engine/wire/pose.fbs build/examples/
-cp -rn config/rehearsals build/examples/
+cp -rn config/rehearsals config/examples/www build/examples/
 cd build/examples
 
 record() { # FILE OPTION...

@@ -1,7 +1,6 @@
 #include "daemon/commands/parameter_commands.hpp"
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/send_control.hpp"
 #include "daemon/settings/config_edit.hpp"
+#include "daemon/state/parameter_json.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -135,45 +135,9 @@ void print_table(const wire::ParameterGroup& group) {
   }
 }
 
-/// The value in its own type; null: left out.
-nlohmann::ordered_json json_of(const wire::ParameterState& state, const std::optional<std::string>& value) {
-  if (!value) return nullptr;
-  if (state.kind == wire::ParameterKind::kText) return *value;
-  const auto json = nlohmann::ordered_json::parse(*value, nullptr, false);
-  return json.is_discarded() ? nlohmann::ordered_json(*value) : json;
-}
-
-nlohmann::ordered_json json_of(const wire::ParameterState& state) {
-  constexpr std::array kKinds = {"number", "whole number", "true or false", "text"};
-  constexpr std::array kChanges = {"at once", "cross-fade", "takes a restart", "takes a reload"};
-  nlohmann::ordered_json json{{"name", state.name},
-                              {"value", json_of(state, state.value)},
-                              {"configured", json_of(state, state.configured)},
-                              {"default", json_of(state, state.default_value)},
-                              {"unit", state.unit},
-                              {"kind", kKinds.at(static_cast<std::size_t>(state.kind))},
-                              {"min", nullptr},
-                              {"max", nullptr},
-                              {"choices", state.choices},
-                              {"left_out", state.left_out},
-                              {"change", kChanges.at(static_cast<std::size_t>(state.change))},
-                              {"help", state.help}};
-  if (state.min) json["min"] = *state.min;
-  if (state.max) json["max"] = *state.max;
-  return json;
-}
-
 void list_values(const ParameterOptions& options) {
   const std::vector<wire::ParameterGroup> groups = groups_for(options);
-  if (options.as_json) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const wire::ParameterGroup& group : groups) {
-      nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
-      for (const wire::ParameterState& state : group.parameters) parameters.push_back(json_of(state));
-      list.push_back({{"scene", group.scene}, {"kind", group.kind}, {"parameters", parameters}});
-    }
-    return print_json(list);
-  }
+  if (options.as_json) return print_json(state::parameters_json(groups));
   for (const wire::ParameterGroup& group : groups) options.as_toml ? print_toml(group) : print_table(group);
 }
 

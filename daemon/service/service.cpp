@@ -273,12 +273,18 @@ class Service::Io {
                            .pairings_file = pairings_file(),
                            .reading_takes_token = http_.reading_takes_token,
                            .proxies = http_.proxies,
+                           .origins = http_.origins,
+                           .folder = http_.folder,
                            .guide = web::installed_guide(),
                            .software = with_version("yuragi"),
                            .tick_rate_hz = rate_hz_};
     settings.hosts.push_back(asio::ip::host_name());
     settings.ask = [this](const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply) {
-      asio::post(io_, [this, control, is_local, reply = std::move(reply)] { reply(handle(control, is_local)); });
+      asio::post(io_, [this, control, is_local, reply = std::move(reply)] {
+        if (control.reload) return request_reload(*control.reload, is_local, reply);
+        if (control.parameters) return parameters_.handle(*control.parameters, is_local, reply);
+        reply(handle(control, is_local));
+      });
     };
     if (history_) {
       settings.history = [this](unsigned hours, const history::Reader::Reply& reply) { history_->ask(hours, reply); };

@@ -1,5 +1,6 @@
 #include "daemon/settings/http_config.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <sstream>
@@ -46,6 +47,27 @@ Result<std::vector<std::string>, Failure> addresses(const std::string& text) {
   return all;
 }
 
+/// As a browser sends it (A. Barth, RFC 6454, 2011, 6.1): small letters, and no slash at the end.
+bool is_origin(std::string_view text) {
+  const std::size_t scheme = text.find("://");
+  const std::string_view host = scheme == std::string_view::npos ? std::string_view() : text.substr(scheme + 3);
+  constexpr std::string_view kOther = "/?#@,*\"'\\";
+  return (text.starts_with("http://") || text.starts_with("https://")) && !host.empty() &&
+         host.find_first_of(kOther) == std::string_view::npos &&
+         std::ranges::none_of(text, [](char letter) { return letter >= 'A' && letter <= 'Z'; });
+}
+
+Result<std::vector<std::string>, Failure> checked_origins(const std::string& text) {
+  std::vector<std::string> all = words_of(text);
+  for (const std::string& origin : all) {
+    if (is_origin(origin)) continue;
+    return Failure{"\"" + origin +
+                   "\" is not an origin; allowed: origins separated by blanks, in small letters and without a path, "
+                   "such as \"http://127.0.0.1:5500 https://editor.p5js.org\""};
+  }
+  return all;
+}
+
 }  // namespace
 
 const Fields<HttpConfig>& http_fields() {
@@ -82,6 +104,17 @@ const Fields<HttpConfig>& http_fields() {
         .choices = kReaders},
        &HttpConfig::reading_takes_token,
        [](const std::string& word) { return word == kReaders[1]; }},
+      {{.name = "origins",
+        .default_value = std::string(),
+        .help = "origins, separated by blanks, whose pages may read the API and open a WebSocket: "
+                "\"https://editor.p5js.org\"; they never change anything. Pages of the daemon always may"},
+       &HttpConfig::origins,
+       checked_origins},
+      {{.name = "folder",
+        .default_value = std::string(),
+        .help = "a folder with pages of your own, served at /site/; files up to 8 MiB, without those whose name begins "
+                "with a dot; empty: none"},
+       &HttpConfig::folder},
   };
   return kFields;
 }

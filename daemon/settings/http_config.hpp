@@ -14,6 +14,8 @@ struct HttpConfig {
   std::string token_file;          ///< if there is one, rights come from its token only; empty: from the address
   bool reading_takes_token = false;
   std::vector<std::string> proxies;  ///< addresses whose X-Forwarded-For is believed
+  std::vector<std::string> origins;  ///< "https://editor.p5js.org": whose pages may read
+  std::string folder;                ///< served at /site/; empty: none
 };
 
 const Fields<HttpConfig>& http_fields();

@@ -103,6 +103,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .query = mark < target.size() ? target.substr(mark + 1) : std::string(),
         .host = field(http::field::host),
         .origin = field(http::field::origin),
+        .method_to_come = field(http::field::access_control_request_method),
         .content_type = field(http::field::content_type),
         .authorization = field(http::field::authorization),
         .cookie = field(http::field::cookie),

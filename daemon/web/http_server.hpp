@@ -25,6 +25,7 @@ struct HttpRequest {
   std::string query = {};   ///< what stands behind the question mark
   std::string host = {};
   std::string origin = {};
+  std::string method_to_come = {};  ///< of a preflight: Access-Control-Request-Method
   std::string content_type = {};
   std::string authorization = {};
   std::string cookie = {};

@@ -4,9 +4,12 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -56,6 +59,22 @@ class Body {
       if (is_sound) all.push_back(each);
     }
     if (!is_sound) refuse(key, fmt::format("a list of at most {} texts", most));
+    return all;
+  }
+  /// The values below, as the configuration has them but without quotes.
+  std::vector<std::pair<std::string, std::string>> values(const char* key, std::size_t most) {
+    const nlohmann::json* value = take(key);
+    if (value == nullptr) return {};
+    std::vector<std::pair<std::string, std::string>> all;
+    bool is_sound = value->is_object() && value->size() <= most;
+    if (is_sound) {
+      for (const auto& [name, each] : value->items()) {
+        is_sound = is_sound && (each.is_string() || each.is_number() || each.is_boolean());
+        if (is_sound) all.emplace_back(name, each.is_string() ? each.get<std::string>() : json_text(each));
+        is_sound = is_sound && name.size() + all.back().second.size() <= wire::kMaxTextBytes;
+      }
+    }
+    if (!is_sound) refuse(key, fmt::format("an object of at most {} texts, numbers, true or false", most));
     return all;
   }
   /// An object below; nullopt: there is none.
@@ -149,6 +168,25 @@ Result<SocketWish, Failure> socket_wish_of(std::string_view json) {
   }
   if (auto mistake = body.mistake()) return std::move(*mistake);
   return wish;
+}
+
+Result<wire::ParameterCommand, Failure> parameter_command_of(std::string_view json) {
+  Body body(json);
+  wire::ParameterCommand command{.scene = body.text("scene", "")};
+  for (auto& [key, value] : body.values("set", wire::kMaxParameterEdits)) {
+    command.edits.push_back({std::move(key), std::move(value)});
+  }
+  for (std::string& key : body.texts("reset", wire::kMaxParameterEdits)) command.edits.push_back({std::move(key), {}});
+  body.require(!command.edits.empty(), "set: is missing: the keys and their new values, or in reset keys alone");
+  body.require(command.edits.size() <= wire::kMaxParameterEdits, "set, reset: too many values at once (maximum 64)");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return command;
+}
+
+Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json) {
+  Body body(json);
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return wire::ReloadCommand{};
 }
 
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {

@@ -48,6 +48,13 @@ struct SocketWish {
 /// left out.
 Result<SocketWish, Failure> socket_wish_of(std::string_view json);
 
+/// {"scene": name, or left out for [look], "set": {key: value}, "reset": [keys]}; a value is a text, a number, true or
+/// false
+Result<wire::ParameterCommand, Failure> parameter_command_of(std::string_view json);
+
+/// {}
+Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
+
 /// {"action": "pause", "resume", "step", "seek" or "rate", "sensor": name, "count": 1, "place": "+30", "rate": 1}
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json);
 

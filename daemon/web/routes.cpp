@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/state/attention.hpp"
+#include "daemon/state/parameter_json.hpp"
 #include "daemon/state/sensor_json.hpp"
 #include "daemon/web/metrics.hpp"
 #include "daemon/web/openapi.hpp"
@@ -118,6 +119,40 @@ Answer change_player(const HttpRequest& request, const Facts& /*facts*/) {
                   }};
 }
 
+Answer parameters(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+  return Question{.control = {.scene = {}, .parameters = wire::ParameterCommand{.describe = true}},
+                  .answer = [](const wire::ControlReply& reply) {
+                    return answer_with(
+                        reply, "parameters",
+                        reply.parameters ? state::parameters_json(reply.parameters->groups) : ordered_json::array());
+                  }};
+}
+Answer change_parameters(const HttpRequest& request, const Facts& /*facts*/) {
+  auto command = parameter_command_of(request.body);
+  if (!command) return problem(400, "Not understood", command.error().message);
+  return Question{.control = {.scene = {}, .parameters = std::move(*command)},
+                  .answer =
+                      [](const wire::ControlReply& reply) {
+                        if (!reply.done) return problem(409, "Not done", reply.message);
+                        return json_response({{"message", reply.message}});
+                      },
+                  .takes_long = true};
+}
+Answer reload(const HttpRequest& request, const Facts& /*facts*/) {
+  auto command = reload_command_of(request.body);
+  if (!command) return problem(400, "Not understood", command.error().message);
+  return Question{
+      .control = {.scene = {}, .reload = std::move(*command)},
+      .answer =
+          [](const wire::ControlReply& reply) {
+            const wire::ReloadReport report = reply.reload.value_or(wire::ReloadReport{});
+            if (!reply.done) return problem(409, "Not done", reply.message);
+            return json_response(
+                {{"message", reply.message}, {"applied", report.applied}, {"takes_restart", report.takes_restart}});
+          },
+      .takes_long = true};
+}
+
 Answer pair(const HttpRequest& request, const Facts& /*facts*/) {
   auto pairing = pairing_of(request.body);
   if (!pairing) return problem(400, "Not understood", pairing.error().message);
@@ -188,6 +223,9 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/scenes", change_scene},
     Route{"GET", "/api/v1/player", players},
     Route{"POST", "/api/v1/player", change_player},
+    Route{"GET", "/api/v1/parameters", parameters},
+    Route{"POST", "/api/v1/parameters", change_parameters},
+    Route{"POST", "/api/v1/reload", reload},
     Route{"GET", "/api/v1/wind", recent_wind},
     Route{"GET", "/api/v1/history", history},
     Route{"GET", kLogPath, log},

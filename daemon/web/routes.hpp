@@ -39,6 +39,7 @@ struct Facts {
 struct Question {
   wire::Control control;
   std::function<HttpResponse(const wire::ControlReply& reply)> answer;
+  bool takes_long = false;  ///< scenes are made for it, and fade
 };
 
 /// A request for the recorded wind.

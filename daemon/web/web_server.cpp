@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "daemon/stream/client_log.hpp"
+#include "daemon/web/cross_origin.hpp"
 #include "daemon/web/guide.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/page.hpp"
@@ -20,6 +21,7 @@
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
+#include "daemon/web/site.hpp"
 #include "daemon/web/sockets.hpp"
 #include "daemon/web/wind_memory.hpp"
 #include "engine/base/contain.hpp"
@@ -31,6 +33,9 @@ namespace {
 
 namespace asio = boost::asio;
 using std::chrono::steady_clock;
+
+/// New scenes are made, and wait for those that still fade.
+constexpr Nanoseconds kMaxChange = std::chrono::seconds(60);
 
 /// The newest of what was published, decoded.
 struct News {
@@ -106,12 +111,13 @@ class Server::Thread {
       : settings_(std::move(settings)),
         guide_(settings_.guide.empty() ? Guide() : Guide(settings_.guide)),
         pairings_file_(settings_.pairings_file),
+        site_(settings_.folder),
         sockets_(*io_, {.limits = settings_.sockets,
                         .tick_rate_hz = settings_.tick_rate_hz,
                         .is_token = [this](const std::string& token) { return access_ && access_->is_token(token); }}),
         server_(std::make_unique<HttpServer>(
             *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
-            [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
+            [this](const HttpRequest& request, const HttpReply& reply) { answer(request, reply); })),
         endpoint_(server_->local_endpoint()) {
     if (!settings_.token.is_empty()) trust(settings_.token);
     thread_ = std::thread([this] { run(); });
@@ -203,13 +209,21 @@ class Server::Thread {
     pairings_ = pairings_file_.read(access_->mark());
   }
 
-  void answer(const HttpRequest& request, HttpReply reply) {
+  void answer(const HttpRequest& request, const HttpReply& reply) {
+    answer_here(request, [this, request, reply](HttpResponse response) {
+      share_answer(response, request, settings_.origins);
+      reply(std::move(response));
+    });
+  }
+
+  void answer_here(const HttpRequest& request, HttpReply reply) {
     if (!is_known_host(request.host, settings_.hosts)) {
       return reply(problem(421, "Not this machine's name",
                            "\"" + request.host +
                                "\" is not a name of this machine: use its address, or add that "
                                "name to [http] hosts"));
     }
+    if (auto preflight = preflight_answer(request, settings_.origins)) return reply(std::move(*preflight));
     if (auto refusal = method_refusal(request)) return reply(std::move(*refusal));
     // Before who asks is looked at: those who are to be paired need it.
     if (auto page = page_answer(request)) return reply(std::move(*page));
@@ -224,7 +238,9 @@ class Server::Thread {
     const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
     const Trust trust{
         .takes_token = settings_.takes_token, .access = access_ ? &*access_ : nullptr, .pairings = &pairings_};
-    const bool trusted = is_trusted(request, trust, utc_s);
+    // A page of another origin may read, but being on this machine does not make it trusted.
+    const bool trusted =
+        is_trusted(request, trust, utc_s) && (trust.takes_token || is_same_origin(request.origin, request.host));
     const std::string address = client_address(request, settings_.proxies);
     if (trust.takes_token && !trusted && shows_credentials(request)) {
       ++counts_.refused_tokens;
@@ -241,6 +257,7 @@ class Server::Thread {
       if (refusal) return reply(std::move(*refusal));
     }
 
+    if (only_reads && is_of_site(request.path)) return read_site(request, std::move(reply));
     Answer answer = answer_to(request, facts_for(trusted, utc_s));
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
     if (std::holds_alternative<SocketOpening>(answer)) {
@@ -288,14 +305,9 @@ class Server::Thread {
     return text ? std::make_shared<const std::string>(std::move(*text)) : nullptr;
   }
 
-  bool may_read(const HttpRequest& request) const {
-    return is_same_origin(request.origin, request.host) ||
-           std::ranges::find(settings_.origins, request.origin) != settings_.origins.end();
-  }
-
   void open_socket(const HttpRequest& request, Sockets::Visitor visitor, const HttpReply& reply) {
     // A browser lets any page open a WebSocket, and sends it this machine's cookies.
-    if (!may_read(request)) {
+    if (!may_read(request, settings_.origins)) {
       return reply(problem(403, "Another page's request",
                            "only pages of this daemon and those of [http] origins may open a WebSocket"));
     }
@@ -346,9 +358,9 @@ class Server::Thread {
 
   void ask(Question question, bool is_local, HttpReply reply) {
     if (!settings_.ask) return reply(problem(503, "Not here", "this daemon accepts no requests"));
-    const auto pending =
-        wait_for_reply(std::move(reply),
-                       problem(503, "No reply", "the daemon does not reply: it hangs, or its machine is overloaded"));
+    const auto pending = wait_for_reply(
+        std::move(reply), problem(503, "No reply", "the daemon does not reply: it hangs, or its machine is overloaded"),
+        question.takes_long ? std::max(settings_.patience, kMaxChange) : settings_.patience);
     // The reply comes on another thread, perhaps when the question has been given up or this object is gone.
     settings_.ask(question.control, is_local,
                   [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
@@ -375,10 +387,24 @@ class Server::Thread {
     });
   }
 
+  void read_site(const HttpRequest& request, HttpReply reply) {
+    const auto pending = wait_for_reply(std::move(reply), ask_again("the disk of [http] folder does not respond"));
+    site_.answer(request, [io = std::weak_ptr(io_), asked = std::weak_ptr(pending)](HttpResponse response) {
+      const auto alive = io.lock();
+      if (!alive) return;
+      asio::post(*alive, [asked, response = std::move(response)]() mutable {
+        if (const auto still = asked.lock()) still->answer(std::move(response));
+      });
+    });
+  }
+
   /// What is waited for, with the answer if it does not come in time.
   std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise) {
+    return wait_for_reply(std::move(reply), std::move(otherwise), settings_.patience);
+  }
+  std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise, Nanoseconds patience) {
     const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
-    pending->given_up.expires_after(settings_.patience);
+    pending->given_up.expires_after(patience);
     pending->given_up.async_wait([pending, otherwise = std::move(otherwise)](const boost::system::error_code& error) {
       if (!error) pending->answer(otherwise);
     });
@@ -400,6 +426,7 @@ class Server::Thread {
   std::mutex newest_mutex_;
   Newest newest_;         ///< of newest_mutex_
   bool is_taken_ = true;  ///< of newest_mutex_; false: the thread will take it
+  Site site_;
   Sockets sockets_;
   std::unique_ptr<HttpServer> server_;
   const std::string endpoint_;

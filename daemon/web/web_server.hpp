@@ -32,6 +32,7 @@ struct Settings {
   bool reading_takes_token = false;       ///< nobody reads without it, either; but this machine reads kHealthPath
   std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
   std::vector<std::string> origins = {};  ///< "https://editor.p5js.org": whose pages may read, too
+  std::filesystem::path folder = {};      ///< served at /site/ (Site); empty: none
   stream::AdmissionLimits clients = {};
   SocketLimits sockets = {};
   std::filesystem::path guide = {};  ///< the folder of the guide as HTML, read by the constructor; empty: none

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { spawn, execFileSync } from "node:child_process";
 import fs from "node:fs";
+import http from "node:http";
 import { createRequire } from "node:module";
 import os from "node:os";
 import path from "node:path";
@@ -41,7 +42,8 @@ function start(program, args, says) {
   return new Promise((resolve, reject) => {
     const hear = (text) => {
       said += text;
-      if (says.test(said)) resolve(child);
+      child.answer = says.exec(said);
+      if (child.answer) resolve(child);
     };
     child.stdout.on("data", hear);
     child.stderr.on("data", hear);
@@ -303,7 +305,7 @@ test("by WebSocket: each message is shown, and silence is no connection", { time
   const socket = await opened;
   const sensors = [{ ...status.sensors[0], state: "live", speed_m_s: 17.3, direction_deg: 225, age_s: 0.1 }];
   for (const [attention, light] of [[[], "live"], [["the disk is nearly full"], "attention"]]) {
-    socket.send(JSON.stringify({ ...status, sensors, attention, verdict: attention.length === 0 ? "well" : "attention" }));
+    socket.send(JSON.stringify({ status: { ...status, sensors, attention, verdict: attention.length === 0 ? "well" : "attention" } }));
     await page.waitForSelector(`[data-light=${light}]`);
     assert.match(await sentence(page), /^Live: roof, 17\.3 m\/s from the south-west, /);
     assert.equal(await page.textContent("#attention"), attention.join());
@@ -368,4 +370,66 @@ test("where reading takes the token, another machine sees nothing until it is pa
   await page.keyboard.press("Enter");
   await waitForSentence(page, /^Synthetic wind, not measured: /);
   await page.context().close();
+});
+
+/** A page of another origin, with nothing on it. */
+async function foreignPage() {
+  const server = http.createServer((_, reply) => reply.writeHead(200, { "Content-Type": "text/html" }).end("<title>foreign</title>"));
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  after(() => server.close());
+  return `http://127.0.0.1:${server.address().port}`;
+}
+/** What a page of that origin gets of the daemon: its state by HTTP, and the first message of a WebSocket. */
+async function readFrom(origin, daemonUrl) {
+  const page = await browser.newPage();
+  await page.goto(origin);
+  const got = await page.evaluate(async (url) => {
+    const state = await fetch(url + "/api/v1/status").then((answer) => answer.ok, () => false);
+    const change = await fetch(url + "/api/v1/scenes", {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify({ scene: "meadow", shown: false }),
+    }).then(() => true, () => false);
+    const wind = await new Promise((resolve) => {
+      const socket = new WebSocket(url.replace("http", "ws") + "/ws");
+      socket.onopen = () => socket.send(JSON.stringify({ wind: 60 }));
+      socket.onmessage = (event) => resolve(Number.isFinite(JSON.parse(event.data).wind.speed));
+      socket.onclose = () => resolve(false);
+    });
+    return { state, change, wind };
+  }, daemonUrl);
+  await page.close();
+  return got;
+}
+
+test("own pages draw the wind at /site/; a foreign page reads only if it is listed, and changes nothing", { timeout: 2 * HANG_MS }, async () => {
+  const listed = await foreignPage();
+  const other = await foreignPage();
+  const www = path.join(folder, "www");
+  fs.cpSync(path.join(import.meta.dirname ?? path.dirname(process.argv[1]), "../../config/examples/www"), www, { recursive: true });
+  fs.copyFileSync(require.resolve("p5/lib/p5.min.js"), path.join(www, "p5.min.js"));
+  const file = configured("site.toml", `
+[http]
+listen = "127.0.0.1:0"
+origins = "${listed}"
+folder = "${www}"
+[[sensor]]
+driver = "synthetic"
+`);
+  const daemon = await start("yuragi", ["run", "--config", file, "--listen", "127.0.0.1:0"], /answering at (http:\/\/\S+)/);
+  const base = daemon.answer[1];
+  const page = await open(base + "/");
+  const messages = [];
+  page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => messages.push(JSON.parse(payload))));
+  await page.goto(base + "/site/");
+  await page.waitForFunction(() => wind && wind.speed > 0 && frameCount > 10);
+  while (messages.length < 120) await page.waitForFunction(() => true); // a turn of the browser
+  assert.ok(messages.every(({ t }, i) => i === 0 || t > messages[i - 1].t));
+  assert.deepEqual(page.complaints, []);
+  await screenshot(page, "site");
+  await page.context().close();
+
+  assert.deepEqual(await readFrom(listed, base), { state: true, change: false, wind: true });
+  assert.deepEqual(await readFrom(other, base), { state: false, change: false, wind: false });
+  await kill(daemon);
 });

@@ -13,7 +13,7 @@ from programs import free_ports
 
 CHROMIUM = "/usr/bin/chromium"
 programs, tools, screenshots = (os.path.abspath(path) for path in sys.argv[1:])
-missing = [path for path in (CHROMIUM, *(os.path.join(tools, "node_modules", name) for name in ("playwright-core", "axe-core")))
+missing = [path for path in (CHROMIUM, *(os.path.join(tools, "node_modules", name) for name in ("playwright-core", "axe-core", "p5")))
            if not os.path.exists(path)]
 if missing or not shutil.which("node"):
     print("skipped: not there:", *(missing or ["node"]), "(config/setup.sh --test installs it)")

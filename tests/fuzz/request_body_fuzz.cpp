@@ -20,6 +20,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (command->count < 1 || command->count > wire::kMaxSteps) std::abort();
     if (!(command->rate >= wire::kMinPlayRate && command->rate <= wire::kMaxPlayRate)) std::abort();
   }
+  if (const auto command = web::parameter_command_of(text)) {
+    if (command->edits.empty() || command->edits.size() > wire::kMaxParameterEdits) std::abort();
+  }
+  if (const auto wish = web::socket_wish_of(text)) {
+    if (!(wish->wind_hz >= 0.0 && wish->wind_hz <= web::SocketWish::kMaxWindRate_hz)) std::abort();
+    if (wish->stream && (wish->stream->thinning.every < 1 || wish->stream->thinning.every > wire::kMaxEvery))
+      std::abort();
+  }
   const std::array<std::string, 1> names = {"roof"};
   const std::size_t half = size / 2;
   static_cast<void>(yuragi::is_known_host(text, names));

@@ -4,7 +4,7 @@ import { Status } from "./status";
 
 const ASK_EVERY_MS = 500;
 const TRY_AGAIN_AFTER_MS = 500;
-const SILENCE_MS = 2500; // of a WebSocket that speaks ten times a second
+const SILENCE_MS = 2500; // of a WebSocket that sends twice a second
 
 export interface Listener {
   news(status: Status): void;
@@ -22,16 +22,18 @@ async function has_web_socket(): Promise<boolean> {
   return "/ws" in description.paths;
 }
 
-/** Receives from the WebSocket until it ends. */
-function hear(listener: Listener): Promise<void> {
+/** Receives from the WebSocket until it ends. Returns false if nothing came: there was no place, or a proxy lets none through. */
+function hear(listener: Listener): Promise<boolean> {
   return new Promise((resolve) => {
+    let has_heard = false;
     const socket = new WebSocket((location.protocol === "https:" ? "wss://" : "ws://") + location.host + "/ws");
     const end = () => {
       socket.onclose = socket.onmessage = null;
       socket.close();
-      resolve();
+      resolve(has_heard);
     };
     let silence = setTimeout(end, SILENCE_MS);
+    socket.onopen = () => socket.send(JSON.stringify({ status: 2 }));
     socket.onclose = () => {
       clearTimeout(silence);
       end();
@@ -40,8 +42,10 @@ function hear(listener: Listener): Promise<void> {
       if (typeof message.data !== "string") return;
       clearTimeout(silence);
       silence = setTimeout(end, SILENCE_MS);
-      const said = JSON.parse(message.data) as Partial<Status>;
-      if (said.wind && said.sensors) listener.news(said as Status);
+      const { status } = JSON.parse(message.data) as { status?: Status };
+      if (!status) return;
+      has_heard = true;
+      listener.news(status);
     };
   });
 }
@@ -51,10 +55,7 @@ export async function listen(listener: Listener): Promise<never> {
   for (;;) {
     try {
       listener.news(await ask<Status>("/api/v1/status"));
-      if (await has_web_socket()) {
-        await hear(listener);
-        listener.lost();
-      }
+      if ((await has_web_socket()) && (await hear(listener))) listener.lost();
       for (;;) {
         await after(ASK_EVERY_MS);
         listener.news(await ask<Status>("/api/v1/status"));

@@ -651,6 +651,18 @@ TEST(Config, TwoSensorsThatReadTheSameAreNotOpened) {
                                  "serial)"));
 }
 
+TEST(HttpTable, OriginsAreAsBrowsersSendThem) {
+  EXPECT_EQ(
+      parse_config("[http]\norigins = 'http://127.0.0.1:5500 https://editor.p5js.org'\n", "a").http.origins.size(), 2U);
+  for (const char* const origin :
+       {"*", "null", "editor.p5js.org", "https://editor.p5js.org/", "https://Editor.p5js.org", "https://", "ftp://a",
+        "https://a,https://b", "https://user@a"}) {
+    EXPECT_THAT([&] { parse_config(fmt::format("[http]\norigins = '{}'\n", origin), "a"); },
+                ThrowsMessage<ConfigError>(HasSubstr("is not an origin; allowed")))
+        << origin;
+  }
+}
+
 class SecretExposure : public testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& text, mode_t mode) {

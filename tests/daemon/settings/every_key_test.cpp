@@ -114,6 +114,7 @@ const std::map<std::string, std::string>& lines_of_choosy_keys() {
       {"stream.listen", "listen = '127.0.0.1:1'"},
       {"http.listen", "listen = '127.0.0.1:1'"},
       {"http.proxies", "proxies = '127.0.0.1'"},
+      {"http.origins", "origins = 'http://a'"},
       {"http.readers", "token_file = 'a'\nreaders = 'token'"},
       {"wind.site_octaves", "site_octaves = '1 2'"},
       {"shaping.site_strong", "site_median = 3.0\nsite_strong = 4.0"},

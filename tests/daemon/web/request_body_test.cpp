@@ -63,5 +63,33 @@ TEST(PlayerBody, MistakesNameTheirKey) {
   EXPECT_THAT(mistake_in_player(R"({"action":"rate","rate":1e9})"), HasSubstr("rate: must be a number"));
 }
 
+TEST(ParameterBody, MistakesNameTheirKey) {
+  const auto mistake = [](std::string_view json) {
+    const auto command = parameter_command_of(json);
+    return command ? "none" : command.error().message;
+  };
+  EXPECT_THAT(mistake("{}"), HasSubstr("set: is missing"));
+  EXPECT_THAT(mistake(R"({"set": []})"), HasSubstr("set: must be an object"));
+  EXPECT_THAT(mistake(R"({"set": {"a": null}})"), HasSubstr("set: must be an object of at most 64"));
+  EXPECT_THAT(mistake(R"({"set": {"a": {"b": 1}}})"), HasSubstr("set: must be"));
+  EXPECT_THAT(mistake(R"({"set": {"a": ")" + std::string(2000, 'a') + "\"}}"), HasSubstr("set: must be"));
+  EXPECT_THAT(mistake(R"({"reset": [1]})"), HasSubstr("reset: must be a list"));
+  EXPECT_EQ(mistake(R"({"set": {"a": 1}})"), "none");
+}
+TEST(SocketBody, AllKeysAndDefaults) {
+  const auto all =
+      socket_wish_of(R"({"wind":60,"status":2,"places":["door"],"stream":{"scenes":["flag"],"every":8,"rate":30}})");
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->wind_hz, 60.0);
+  EXPECT_EQ(all->status_hz, 2.0);
+  EXPECT_EQ(all->places, std::vector<std::string>{"door"});
+  ASSERT_TRUE(all->stream);
+  EXPECT_EQ(all->stream->thinning.every, 8U);
+  EXPECT_EQ(all->stream->rate_hz, 30.0);
+  const auto none = socket_wish_of("{}");
+  ASSERT_TRUE(none);
+  EXPECT_FALSE(none->stream);
+}
+
 }  // namespace
 }  // namespace yuragi::daemon::web

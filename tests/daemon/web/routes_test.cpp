@@ -103,6 +103,37 @@ TEST_F(RoutesTest, AScene_IsAskedOfTheDaemon) {
   EXPECT_EQ(refused.status, 409U);
   EXPECT_EQ(json::parse(refused.body)["detail"], "no scene 'meadow'");
 }
+TEST_F(RoutesTest, ValuesAndAReload_AreAskedOfTheDaemon) {
+  const Answer set =
+      answer_to({.method = "POST",
+                 .path = "/api/v1/parameters",
+                 .body = R"({"scene":"elm","set":{"gain":1.5,"shown":true,"color":"#112233"},"reset":["x"]})"},
+                facts_);
+  ASSERT_TRUE(std::holds_alternative<Question>(set));
+  const auto command = std::get<Question>(set).control.parameters;
+  ASSERT_TRUE(command);
+  EXPECT_EQ(command->scene, "elm");
+  ASSERT_EQ(command->edits.size(), 4U);
+  EXPECT_EQ(command->edits[0].value, "#112233");
+  EXPECT_EQ(command->edits[1].value, "1.5");
+  EXPECT_EQ(command->edits[2].value, "true");
+  EXPECT_EQ(command->edits[3].value, std::nullopt);
+  EXPECT_EQ(std::get<Question>(set).answer({.done = false, .message = "no", .scenes = {}}).status, 409U);
+
+  const Answer list = answer_to({.method = "GET", .path = "/api/v1/parameters"}, facts_);
+  const wire::ParameterReport report{.groups = {{"", "", {{.name = "clouds", .value = "0.5"}}}}};
+  const json listed = json::parse(
+      std::get<Question>(list).answer({.done = true, .message = "", .scenes = {}, .parameters = report}).body);
+  EXPECT_EQ(listed["parameters"][0]["parameters"][0]["value"], 0.5);
+
+  const Answer reload = answer_to({.method = "POST", .path = "/api/v1/reload", .body = "{}"}, facts_);
+  ASSERT_TRUE(std::get<Question>(reload).control.reload);
+  const wire::ReloadReport done{.applied = {"[look] clouds: 0 -> 1"}};
+  EXPECT_EQ(json::parse(std::get<Question>(reload)
+                            .answer({.done = true, .message = "done", .scenes = {}, .reload = done})
+                            .body)["applied"][0],
+            "[look] clouds: 0 -> 1");
+}
 TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
   const Answer answer = answer_to({.method = "GET", .path = "/api/v1/player"}, facts_);
   ASSERT_TRUE(std::holds_alternative<Question>(answer));
@@ -163,13 +194,15 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
     const json& schema = api["paths"][path]["post"]["requestBody"]["content"]["application/json"]["schema"];
     EXPECT_EQ(schema["additionalProperties"], false);
     json body = json::object();
+    if (schema["properties"].empty()) return body.dump();
     for (const auto& [key, property] : schema["properties"].items())
       body[key] = property.contains("default") ? property["default"]
                   : property.contains("enum")  ? property["enum"][0]
                                                : json("meadow");
     return body.dump();
   };
-  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions"}) {
+  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions", "/api/v1/parameters",
+                           "/api/v1/reload"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
     const auto* const refusal = std::get_if<HttpResponse>(&answer);
     EXPECT_EQ(refusal, nullptr) << refusal->body;

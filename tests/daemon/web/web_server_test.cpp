@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -207,6 +208,52 @@ TEST_F(WebServerTest, NobodyElsesPageSeesOrChangesAnything) {
   EXPECT_THAT(other.post("/api/v1/scenes", body, std::string(kJson) + "Origin: http://127.0.0.1\r\n"),
               StartsWith("HTTP/1.1 200"));
   EXPECT_EQ(asked_, "meadow from here;");
+}
+TEST_F(WebServerTest, APageOfAListedOriginReadsTheApiAndChangesNothing) {
+  Settings shared = settings();
+  shared.origins = {"https://editor.p5js.org"};
+  shared.log = [](std::size_t) { return std::vector<LogLine>(); };
+  Server server(std::move(shared));
+  server.publish_sensors(status_of("roof"), status_of("elsewhere"));
+  Client client(server.local_endpoint());
+  const std::string listed = "Origin: https://editor.p5js.org\r\n";
+  const auto is_shared = HasSubstr("\r\nAccess-Control-Allow-Origin: https://editor.p5js.org\r\n");
+  const auto varies = HasSubstr("\r\nVary: Origin\r\n");
+  EXPECT_THAT(client.get("/api/v1/status", listed), AllOf(is_shared, varies, HasSubstr("\"elsewhere\"")))
+      << "as from another machine: files without their folders";
+  EXPECT_THAT(client.get("/api/v1/log", listed), AllOf(StartsWith("HTTP/1.1 401"), is_shared));
+  EXPECT_THAT(client.get("/healthz", listed), Not(HasSubstr("Access-Control")));
+  EXPECT_THAT(client.get("/api/v1/status", "Origin: https://evil.example\r\n"),
+              AllOf(varies, Not(HasSubstr("Access-Control"))));
+  EXPECT_THAT(client.get("/api/v1/status"), AllOf(varies, Not(HasSubstr("Access-Control")), HasSubstr("\"roof\"")));
+  EXPECT_THAT(client.post("/api/v1/scenes", R"({"scene":"meadow"})", kJson + listed),
+              AllOf(StartsWith("HTTP/1.1 403"), Not(HasSubstr("Access-Control"))));
+
+  const auto preflight = [&](const std::string& path, const std::string& method, const std::string& origin) {
+    client.send("OPTIONS " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" + origin +
+                "Access-Control-Request-Method: " + method + "\r\n\r\n");
+    return client.answer();
+  };
+  EXPECT_THAT(preflight("/api/v1/status", "GET", listed),
+              AllOf(StartsWith("HTTP/1.1 204"), is_shared, varies, HasSubstr("Access-Control-Allow-Methods: GET\r\n")));
+  EXPECT_THAT(preflight("/api/v1/scenes", "POST", listed),
+              AllOf(StartsWith("HTTP/1.1 405"), Not(HasSubstr("Access-Control"))));
+  EXPECT_THAT(preflight("/api/v1/status", "GET", "Origin: https://evil.example\r\n"),
+              AllOf(StartsWith("HTTP/1.1 405"), Not(HasSubstr("Access-Control"))));
+  EXPECT_EQ(asked_, "");
+}
+TEST_F(WebServerTest, AFolderOfOwnPages) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "index.html") << "<p>mine";
+  Settings own = settings();
+  own.folder = folder.path();
+  Server server(std::move(own));
+  Client client(server.local_endpoint());
+  EXPECT_THAT(client.get("/site/"), AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("<p>mine"),
+                                          HasSubstr("script-src 'self'"), Not(HasSubstr("default-src 'none'"))));
+  EXPECT_THAT(client.get("/site/../site_test"), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(client.post("/site/", "{}", kJson), StartsWith("HTTP/1.1 405"));
+  EXPECT_THAT(Client(server_.local_endpoint()).get("/site/"), HasSubstr("set [http] folder"));
 }
 TEST_F(WebServerTest, WithATokenRightsComeFromItWhateverTheAddress) {
   Settings with_token = settings();

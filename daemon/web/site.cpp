@@ -1,0 +1,213 @@
+#include "daemon/web/site.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/web/problem.hpp"
+#include "engine/base/contain.hpp"
+#include "engine/platform/whole_file.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A page may load and ask whatever is of this daemon, and no other server; no script stands in a page's text.
+constexpr const char* kPolicy =
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src 'self' data: "
+    "blob:; font-src 'self' data:; media-src 'self' blob:; worker-src 'self' blob:; base-uri 'none'; form-action "
+    "'none'; frame-ancestors 'self'";
+
+struct MediaType {
+  std::string_view extension, type;
+};
+constexpr std::array kMediaTypes = {
+    MediaType{".html", "text/html; charset=utf-8"},
+    MediaType{".htm", "text/html; charset=utf-8"},
+    MediaType{".js", "text/javascript; charset=utf-8"},
+    MediaType{".mjs", "text/javascript; charset=utf-8"},
+    MediaType{".css", "text/css; charset=utf-8"},
+    MediaType{".json", "application/json"},
+    MediaType{".map", "application/json"},
+    MediaType{".webmanifest", "application/manifest+json"},
+    MediaType{".txt", "text/plain; charset=utf-8"},
+    MediaType{".md", "text/plain; charset=utf-8"},
+    MediaType{".csv", "text/csv; charset=utf-8"},
+    MediaType{".frag", "text/plain; charset=utf-8"},
+    MediaType{".vert", "text/plain; charset=utf-8"},
+    MediaType{".glsl", "text/plain; charset=utf-8"},
+    MediaType{".svg", "image/svg+xml"},
+    MediaType{".png", "image/png"},
+    MediaType{".jpg", "image/jpeg"},
+    MediaType{".jpeg", "image/jpeg"},
+    MediaType{".gif", "image/gif"},
+    MediaType{".webp", "image/webp"},
+    MediaType{".ico", "image/x-icon"},
+    MediaType{".woff", "font/woff"},
+    MediaType{".woff2", "font/woff2"},
+    MediaType{".ttf", "font/ttf"},
+    MediaType{".otf", "font/otf"},
+    MediaType{".wasm", "application/wasm"},
+    MediaType{".glb", "model/gltf-binary"},
+    MediaType{".gltf", "model/gltf+json"},
+    MediaType{".mp3", "audio/mpeg"},
+    MediaType{".ogg", "audio/ogg"},
+    MediaType{".wav", "audio/wav"},
+    MediaType{".mp4", "video/mp4"},
+    MediaType{".webm", "video/webm"},
+};
+
+std::string content_type_of(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const auto* const found = std::ranges::find(kMediaTypes, extension, &MediaType::extension);
+  return std::string(found != kMediaTypes.end() ? found->type : "application/octet-stream");
+}
+
+/// A path with its %XX decoded (RFC 3986, 2.1); nullopt: there is a damaged one, or one of a zero.
+std::optional<std::string> decoded(std::string_view path) {
+  std::string text;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (path[i] != '%') {
+      text += path[i];
+      continue;
+    }
+    unsigned byte = 0;
+    const std::string_view digits = path.substr(i + 1, 2);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    if (digits.size() != 2 || error != std::errc() || end != digits.data() + 2 || byte == 0) return std::nullopt;
+    text += static_cast<char>(byte);
+    i += 2;
+  }
+  return text;
+}
+
+/// Without names that begin with a dot: "..", and what people hide.
+bool is_plain(const fs::path& path) {
+  return std::ranges::none_of(path, [](const fs::path& name) { return name.string().starts_with('.'); });
+}
+
+bool is_within(const fs::path& file, const fs::path& folder) {
+  return std::ranges::mismatch(folder, file).in1 == folder.end();
+}
+
+HttpResponse not_found(const HttpRequest& request) {
+  return problem(404, "Not found", request.path + " is no file of [http] folder");
+}
+
+std::string entity_tag_of(const fs::path& file, std::uintmax_t size, std::error_code& error) {
+  return fmt::format("\"{:x}-{:x}\"", size, fs::last_write_time(file, error).time_since_epoch().count());
+}
+
+}  // namespace
+
+bool is_of_site(std::string_view path) {
+  return path.starts_with(kSitePath) || path == kSitePath.substr(0, kSitePath.size() - 1);
+}
+
+HttpResponse site_response(const fs::path& folder, const HttpRequest& request) {
+  const auto redirection = [&request] {
+    return HttpResponse{.status = 301, .fields = {{"Location", request.path + "/"}}};
+  };
+  if (request.path.size() < kSitePath.size()) return redirection();
+  const auto name = decoded(std::string_view(request.path).substr(kSitePath.size()));
+  if (!name || name->starts_with('/') || !is_plain(*name)) return not_found(request);
+  std::error_code error;
+  const fs::path root = fs::canonical(folder, error);
+  if (error) return problem(404, "Not found", "[http] folder cannot be read: " + error.message());
+  fs::path file = fs::canonical(root / *name, error);
+  if (error || !is_within(file, root)) return not_found(request);
+  if (fs::is_directory(file, error)) {
+    if (!request.path.ends_with('/')) return redirection();
+    file = fs::canonical(file / "index.html", error);
+    if (error || !is_within(file, root)) return not_found(request);
+  }
+  if (!fs::is_regular_file(file, error)) return not_found(request);
+  const std::uintmax_t size = fs::file_size(file, error);
+  const std::string entity_tag = error ? std::string() : entity_tag_of(file, size, error);
+  if (error) return not_found(request);
+  HttpResponse response{.content_type = content_type_of(file),
+                        .fields = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}}};
+  response.fields.emplace_back("ETag", entity_tag);
+  if (request.if_none_match == entity_tag) {
+    response.status = 304;
+    return response;
+  }
+  auto text = platform::read_whole(file, kMaxSiteFile_bytes);
+  if (!text) return problem(404, "Not served", request.path + " " + text.error().message);
+  response.body = std::move(*text);
+  return response;
+}
+
+/// With the thread, which ends by itself if a disk hangs when the daemon ends.
+struct Site::Shared {
+  struct Waiting {
+    HttpRequest request;
+    std::function<void(HttpResponse)> reply;
+  };
+
+  fs::path folder;
+  std::mutex mutex{};
+  std::condition_variable changed{};
+  std::deque<Waiting> waiting{};
+  bool is_ending = false;
+
+  void work() {
+    std::unique_lock lock(mutex);
+    while (true) {
+      changed.wait(lock, [this] { return is_ending || !waiting.empty(); });
+      if (is_ending) return;
+      const Waiting next = std::move(waiting.front());
+      waiting.pop_front();
+      lock.unlock();
+      contain(
+          "reading a file of [http] folder", [&] { next.reply(site_response(folder, next.request)); },
+          [&](const char*) {
+            next.reply(problem(500, "Not read", "this file could not be read, which is a fault of the program"));
+          });
+      lock.lock();
+    }
+  }
+};
+
+Site::Site(fs::path folder) {
+  if (folder.empty()) return;
+  shared_ = std::make_shared<Shared>();
+  shared_->folder = std::move(folder);
+  std::thread([shared = shared_] { contain("the thread of [http] folder", [&] { shared->work(); }); }).detach();
+}
+
+Site::~Site() {
+  if (!shared_) return;
+  const std::lock_guard lock(shared_->mutex);
+  shared_->is_ending = true;
+  shared_->changed.notify_all();
+}
+
+void Site::answer(const HttpRequest& request, std::function<void(HttpResponse)> reply) {
+  if (!shared_) return reply(problem(404, "Not served", "set [http] folder to the folder with your pages"));
+  {
+    const std::lock_guard lock(shared_->mutex);
+    if (shared_->waiting.size() < kMaxWaiting) {
+      shared_->waiting.push_back({request, std::move(reply)});
+      shared_->changed.notify_all();
+      return;
+    }
+  }
+  reply(problem(503, "Not yet", "the disk of [http] folder does not respond"));
+}
+
+}  // namespace yuragi::daemon::web
