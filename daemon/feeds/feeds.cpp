@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "daemon/feeds/dmx_feed.hpp"
+#include "daemon/feeds/nmea_feed.hpp"
 #include "daemon/feeds/osc_feed.hpp"
 #include "engine/base/contain.hpp"
 
@@ -19,11 +20,12 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 constexpr auto kLongestFarewell = std::chrono::seconds(1);
 
 /// The configuration of one feed.
-using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx>;
+using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx, settings::feeds::Nmea>;
 
 std::vector<AnyConfig> all_of(const settings::feeds::Config& config) {
   std::vector<AnyConfig> all(config.osc.begin(), config.osc.end());
   all.insert(all.end(), config.dmx.begin(), config.dmx.end());
+  all.insert(all.end(), config.nmea.begin(), config.nmea.end());
   return all;
 }
 
@@ -32,6 +34,9 @@ std::unique_ptr<Feed> make_feed(const settings::feeds::Osc& osc) {
 }
 std::unique_ptr<Feed> make_feed(const settings::feeds::Dmx& dmx) {
   return make_dmx_feed(dmx);
+}
+std::unique_ptr<Feed> make_feed(const settings::feeds::Nmea& nmea) {
+  return make_nmea_feed(nmea);
 }
 
 /// A feed that runs, with the configuration that it was made of.

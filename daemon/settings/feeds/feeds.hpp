@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "daemon/settings/feeds/dmx.hpp"
+#include "daemon/settings/feeds/nmea.hpp"
 #include "daemon/settings/feeds/osc.hpp"
 #include "daemon/values/grid.hpp"
 #include "daemon/values/moment.hpp"
@@ -16,6 +17,7 @@ struct Config {
   std::vector<values::Place> places;
   std::vector<Osc> osc;
   std::vector<Dmx> dmx = {};
+  std::vector<Nmea> nmea = {};
 
   friend bool operator==(const Config&, const Config&) = default;
 
