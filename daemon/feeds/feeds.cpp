@@ -10,6 +10,7 @@
 
 #include "daemon/feeds/dmx_feed.hpp"
 #include "daemon/feeds/mqtt_feed.hpp"
+#include "daemon/feeds/nmea_feed.hpp"
 #include "daemon/feeds/osc_feed.hpp"
 #include "engine/base/contain.hpp"
 
@@ -20,12 +21,14 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 constexpr auto kLongestFarewell = std::chrono::seconds(1);
 
 /// The configuration of one feed.
-using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx, settings::feeds::Mqtt>;
+using AnyConfig =
+    std::variant<settings::feeds::Osc, settings::feeds::Dmx, settings::feeds::Nmea, settings::feeds::Mqtt>;
 
 std::vector<AnyConfig> all_of(const settings::feeds::Config& config) {
   std::vector<AnyConfig> all(config.osc.begin(), config.osc.end());
   all.insert(all.end(), config.dmx.begin(), config.dmx.end());
   if (!config.mqtt.host.empty()) all.emplace_back(config.mqtt);
+  all.insert(all.end(), config.nmea.begin(), config.nmea.end());
   return all;
 }
 
@@ -37,6 +40,9 @@ std::unique_ptr<Feed> make_feed(const settings::feeds::Dmx& dmx, const Surroundi
 }
 std::unique_ptr<Feed> make_feed(const settings::feeds::Mqtt& mqtt, const Surroundings& around) {
   return make_mqtt_feed(mqtt, around);
+}
+std::unique_ptr<Feed> make_feed(const settings::feeds::Nmea& nmea, const Surroundings&) {
+  return make_nmea_feed(nmea);
 }
 
 /// A feed that runs, with the configuration that it was made of.

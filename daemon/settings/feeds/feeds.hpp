@@ -5,6 +5,7 @@
 
 #include "daemon/settings/feeds/dmx.hpp"
 #include "daemon/settings/feeds/mqtt.hpp"
+#include "daemon/settings/feeds/nmea.hpp"
 #include "daemon/settings/feeds/osc.hpp"
 #include "daemon/values/grid.hpp"
 #include "daemon/values/moment.hpp"
@@ -18,6 +19,7 @@ struct Config {
   std::vector<Osc> osc;
   std::vector<Dmx> dmx = {};
   Mqtt mqtt;  ///< of its own table
+  std::vector<Nmea> nmea = {};
 
   friend bool operator==(const Config&, const Config&) = default;
 

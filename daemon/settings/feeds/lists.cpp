@@ -67,6 +67,11 @@ std::vector<ParameterError> add_dmx_grid(Config& config, const std::string&, con
   return add_to(config.dmx.back().grids, std::move(grid));
 }
 
+std::vector<ParameterError> add_nmea(Config& config, const std::string& name, const ParameterValues& values,
+                                     const values::Names&) {
+  return add_to(config.nmea, nmea_of(name, values));
+}
+
 }  // namespace
 
 std::span<const ListTable> list_tables() {
@@ -119,6 +124,12 @@ std::span<const ListTable> list_tables() {
                 .parameters = dmx_parameters(),
                 .add = add_dmx,
                 .below = kDmxLists},
+      ListTable{.name = "nmea",
+                .summary = "sends the wind as sentences of NMEA 0183 to another program",
+                .max_entries = kMaxFeeds,
+                .needs_name = false,
+                .parameters = nmea_parameters(),
+                .add = add_nmea},
   };
   return kTables;
 }

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/feeds/mqtt_texts.hpp"
 #include "drivers/bus/mqtt_client.hpp"
 #include "tests/support/mosquitto_broker.hpp"
 

@@ -149,6 +149,8 @@ const std::map<std::string, std::string>& lines_of_choosy_keys() {
       {"dmx.grid.from", "from = '0 2'"},
       {"dmx.grid.to", "to = '#000000 #00ff00'"},
       {"dmx.grid.rest", "rest = '#000001'"},
+      {"nmea.to", "to = '127.0.0.1:10111'"},
+      {"nmea.listen", "listen = '127.0.0.1:10111'"},
       {"output.size", "size = '640x480'"},
       {"output.screen_lower_left", std::string(kScreen)},
       {"output.screen_lower_right", std::string(kScreen)},

@@ -205,7 +205,7 @@ TEST(OscDriver, KnowsWhatADaemonSendsBesideItsWind) {
   for (const char* address : {"/wind/speed", "/sensor/roof/age", "/place/door", "/scene/meadow/opacity"})
     run.send({address, "f", "1"});
   ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "4.5", "270"}); }));
-  EXPECT_EQ(run.all().refused_count(decode::Refusal::kNotMine), 0U);
+  EXPECT_EQ(run.all().count(decode::Refusal::kNotMine), 0);
   run.send({"/window/speed", "f", "1"});
   EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine));
 }
