@@ -147,6 +147,7 @@ class Feeds::Thread {
       if (moment && (config || !reported || moment->mono - *reported >= kStatusInterval)) {
         reported = moment->mono;
         std::vector<Status> status;
+        status.reserve(feeds.size());
         for (const Running& running : feeds) status.push_back(running.feed->status());
         const std::lock_guard guard(shared.mutex);
         shared.status = std::move(status);

@@ -140,7 +140,7 @@ class MqttLink::Worker {
       if (!post) return;
       const MqttSending sending = client_->publish(message_of(*post));
       const std::lock_guard lock(shared_->mutex);
-      if (sending == MqttSending::kBusy) return shared_->outbox.put_back(std::move(*post));
+      if (sending == MqttSending::kBusy) return shared_->outbox.put_back(*post);
       if (sending == MqttSending::kRefused) return;
       ++shared_->state.messages;
       shared_->state.bytes += post->topic.size() + post->payload.size();

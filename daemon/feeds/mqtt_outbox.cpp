@@ -33,9 +33,8 @@ std::optional<MqttPost> MqttOutbox::take() {
   return post;
 }
 
-void MqttOutbox::put_back(MqttPost post) {
-  std::string topic = post.topic;
-  if (waiting_.try_emplace(topic, std::move(post)).second) order_.push_front(std::move(topic));
+void MqttOutbox::put_back(const MqttPost& post) {
+  if (waiting_.try_emplace(post.topic, post).second) order_.push_front(post.topic);
 }
 
 }  // namespace yuragi::daemon::feeds

@@ -29,7 +29,7 @@ class MqttOutbox {
   /// The next message, which waits no longer; nullopt: none waits.
   std::optional<MqttPost> take();
   /// A message that could not be sent waits again, before all others, unless there is a newer one.
-  void put_back(MqttPost post);
+  void put_back(const MqttPost& post);
 
   bool is_empty() const noexcept { return order_.empty(); }
   std::size_t size() const noexcept { return order_.size(); }

@@ -11,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -101,9 +102,8 @@ class MosquittoClient final : public MqttClient {
         trouble_ = explain(error);
         return MqttStatus::kLost;
       }
-      const bool was_woken = take_wake();
       if (is_interrupted_) return MqttStatus::kInterrupted;
-      if (was_woken) return MqttStatus::kSilence;
+      if (std::exchange(was_woken_, false)) return MqttStatus::kSilence;
     }
     message = std::move(messages_.front());
     messages_.pop_front();
@@ -143,7 +143,6 @@ class MosquittoClient final : public MqttClient {
         return Failure{describe(wanted_) + " does not reply: check its address, the network, and that it is running"};
       }
       const int error = turn(std::min(remaining, kHousekeeping));
-      take_wake();
       if (is_interrupted_) return Failure{"interrupted"};
       if (!refusal_.empty()) return Failure{refusal_};
       if (error != MOSQ_ERR_SUCCESS) return Failure{explain(error)};
@@ -187,21 +186,21 @@ class MosquittoClient final : public MqttClient {
     if (socket < 0) return MOSQ_ERR_NO_CONN;
     if (is_interrupted_) return MOSQ_ERR_SUCCESS;
     const bool wants_to_write = mosquitto_want_write(client_.get());
-    const WaitEnd end = wakes_.wait(socket, wants_to_write ? WaitFor::kWritable : WaitFor::kReadable, timeout);
-    if (end == WaitEnd::kInterrupted) return MOSQ_ERR_SUCCESS;
+    const WaitFor what = wants_to_write ? WaitFor::kWritable : WaitFor::kReadable;
+    WaitEnd end = wakes_.wait(socket, what, timeout);
+    if (end == WaitEnd::kInterrupted) {
+      if (is_interrupted_) return MOSQ_ERR_SUCCESS;
+      // Somebody who wakes it often delays neither what comes in nor the library's watch over a broker that hangs.
+      wakes_.clear();
+      was_woken_ = true;
+      end = wakes_.wait(socket, what, Nanoseconds::zero());
+    }
     int error = MOSQ_ERR_SUCCESS;
     if (end == WaitEnd::kReady && wants_to_write) error = mosquitto_loop_write(client_.get(), 1);
     if (end == WaitEnd::kReady && error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_read(client_.get(), 1);
     if (error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_misc(client_.get());
     thrown_.rethrow();
     return error;
-  }
-
-  /// Returns true if wake() has been called since.
-  bool take_wake() noexcept {
-    if (!wakes_.is_set()) return false;
-    wakes_.clear();
-    return true;
   }
 
   static MosquittoClient& self_of(void* self) { return *static_cast<MosquittoClient*>(self); }
@@ -272,8 +271,9 @@ class MosquittoClient final : public MqttClient {
 
   MqttSubscription wanted_;
   HostLookup lookup_;
-  std::size_t turn_ = 0;  ///< which of the broker's addresses is tried
-  Interruption wakes_;    ///< ends a wait once
+  std::size_t turn_ = 0;    ///< which of the broker's addresses is tried
+  Interruption wakes_;      ///< ends a wait once
+  bool was_woken_ = false;  ///< and receive() has not returned since
   std::atomic<bool> is_interrupted_ = false;
   std::unique_ptr<mosquitto, FreeMosquitto> client_;
   std::deque<MqttMessage> messages_;

@@ -81,6 +81,14 @@ TEST_F(AsRecorded, TheRecordingDecidesNeitherWhereItListensNorWhatItRuns) {
                                                 HasSubstr("[http] is not used"), HasSubstr("alerts are not used")));
 }
 
+TEST_F(AsRecorded, TheRecordingPublishesNothing) {
+  record("[mqtt]\nhost = \"127.0.0.1\"\ncommands = true\n[[osc]]\n" + installation_text());
+  const sensing::RecordedInstallation installation = installation_in(file_);
+  EXPECT_EQ(installation.config.feeds, settings::feeds::Config());
+  EXPECT_EQ(installation.config.by_name.at("mqtt").all(), settings::default_config().by_name.at("mqtt").all());
+  EXPECT_THAT(installation.remarks, testing::Contains(HasSubstr("feeds to other programs are not used")));
+}
+
 TEST_F(AsRecorded, TheRecordedClockOpensAndCloses) {
   record(installation_text("hours = \"10:00-15:00\"\nzone = \"Europe/Berlin\"\nfade = 5\n"));
   EXPECT_GT(replay(file_).wind_mean_m_s, 4.0) << "14:00 in Berlin";
