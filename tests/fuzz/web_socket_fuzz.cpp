@@ -72,9 +72,12 @@ std::optional<Reply> reply_to(const std::string& request, const std::string& fra
 }
 
 /// A frame of a client, which is masked; by zeros, so that the payload stands in it as it is (RFC 6455, 5.2).
-std::string frame_of(unsigned char opcode, std::string_view payload) {
-  std::string frame = {static_cast<char>(0x80U | opcode), static_cast<char>(0xFE)};
-  frame += {static_cast<char>(payload.size() >> 8U), static_cast<char>(payload.size() & 0xFFU)};
+std::string frame_of(unsigned opcode, std::string_view payload) {
+  constexpr std::size_t kMaxShort = 125;
+  const bool is_short = payload.size() <= kMaxShort;
+  std::string frame = {static_cast<char>(0x80U | opcode),
+                       static_cast<char>(0x80U | (is_short ? payload.size() : 126U))};
+  if (!is_short) frame += {static_cast<char>(payload.size() >> 8U), static_cast<char>(payload.size() & 0xFFU)};
   return frame + std::string(4, '\0') + std::string(payload);
 }
 
