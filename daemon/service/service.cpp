@@ -547,7 +547,7 @@ class Service::Io {
                                        .shaped_scale = norms_.shaped.value_or(real_scale),
                                        .time = now,
                                        .dt_s = dt_s,
-                                        .openness = shaping.openness},
+                                       .openness = shaping.openness},
                                       hub_.values(), opacities_);
     feeds_->publish(moment);
     if (web_) web_->publish_moment(moment);
