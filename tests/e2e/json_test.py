@@ -221,16 +221,26 @@ class Json(unittest.TestCase):
 
     def test_every_key_that_describe_lists_is_among_the_values(self):
         """With one entry in each list; a key that is left out without a default is no value."""
+        tables = json.loads(run("describe", "--json").stdout)
+        feeds = [name for name in (table["table"].strip("[]") for table in tables if table["table"].startswith("[["))
+                 if name.split(".")[0] not in ("sensor", "scene", "camera", "alert", "output")]
+        self.assertIn("osc.cue", feeds)
         everything = os.path.join(self.folder, "everything.toml")
         with open(everything, "w", encoding="utf-8") as file:
             file.write('[[sensor]]\ndriver = "synthetic"\n[[scene]]\nkind = "grass"\n[[camera]]\nname = "a"\n'
                        '[[alert]]\nname = "a"\ncommand = "true"\n[[output]]\n[[output.window]]\n')
+            for name in feeds:
+                file.write(f"[[{name}]]\n" + ("" if "." in name else 'name = "a"\n'))
         config = json.loads(run("check-config", everything, "--full", "--json").stdout)
         sensor, output = config["sensors"][0], config["outputs"][0]
         values = {"[[camera]]": config["cameras"][0]["values"], "[[alert]]": config["alerts"][0]["values"],
                   "[[output]]": output["values"], "[[output.window]]": output["windows"][0],
                   "driver synthetic": sensor["values"], "kind grass": config["scenes"][0]["values"]}
-        for table in json.loads(run("describe", "--json").stdout):
+        for name in feeds:
+            owner, _, below = name.partition(".")
+            entry = config[owner][0]
+            values[f"[[{name}]]"] = entry[below][0] if below else entry["values"]
+        for table in tables:
             name = table["table"]
             if name in ("[[sensor]]", "[[scene]]"):
                 kind = re.match(r'(driver|kind) = "(\S+)"', table["summary"])
