@@ -560,11 +560,11 @@ port = {port}
         self.assertAlmostEqual(float(replayed.group(2)), 11.27, delta=0.8)
 
     def test_a_replay_at_a_pace_ends_with_its_recording(self):
-        log = self.simulated_recording(duration_s=3)
-        done = run("replay", log, "--rate", "4", "--listen", "127.0.0.1:0")
+        log = self.simulated_recording(duration_s=60)
+        done = run("replay", log, "--rate", "20", "--listen", "127.0.0.1:0")
         self.assertEqual(done.returncode, 0, done.stderr)
         ticks = int(re.search(r"(\d+) ticks", done.stderr).group(1))
-        self.assertLess(ticks, 2 * 60, "three seconds at four times their pace, 60 ticks a second")
+        self.assertLess(ticks, 60 * 60 / 4, "a minute at 20 times its pace takes 3 s; a busy machine may take 15")
         self.assertIn("the recording has ended", done.stderr)
 
     def test_a_day_is_replayed_with_the_configuration_and_all_sensors_of_the_recording(self):

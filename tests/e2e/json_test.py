@@ -230,7 +230,8 @@ class Json(unittest.TestCase):
             file.write('[[sensor]]\ndriver = "synthetic"\n[[scene]]\nkind = "grass"\n[[camera]]\nname = "a"\n'
                        '[[alert]]\nname = "a"\ncommand = "true"\n[[output]]\n[[output.window]]\n')
             for name in feeds:
-                file.write(f"[[{name}]]\n" + ("" if "." in name else 'name = "a"\n'))
+                beside_the_channel = "channel = 10\n" if name == "dmx.grid" else ""
+                file.write(f"[[{name}]]\n" + ("" if "." in name else 'name = "a"\n') + beside_the_channel)
         config = json.loads(run("check-config", everything, "--full", "--json").stdout)
         sensor, output = config["sensors"][0], config["outputs"][0]
         values = {"[[camera]]": config["cameras"][0]["values"], "[[alert]]": config["alerts"][0]["values"],
