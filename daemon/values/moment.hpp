@@ -34,7 +34,7 @@ struct SensorValue {
 
 /// The names of an installation's sensors, places and scenes, and its grids, in the order of a Moment's values.
 struct Names {
-  std::vector<std::string> sensors, places, scenes;
+  std::vector<std::string> sensors = {}, places = {}, scenes = {};
   std::vector<Grid> grids = {};
   friend bool operator==(const Names&, const Names&) = default;
 };

@@ -20,8 +20,8 @@ namespace yuragi::daemon::settings::feeds {
 struct OscMap {
   std::string value_text;
   std::string address;
-  std::optional<Span> given_from;
-  Span from, to;
+  std::optional<Span> given_from = {};
+  Span from = {}, to = {};
   double curve = 1.0;
   double smooth_s = 0.0;
   values::Reference value{};  ///< of value_text
@@ -39,11 +39,11 @@ inline constexpr std::array<std::string_view, 4> kOscConditionNames = {"gust", "
 struct OscCue {
   OscCondition when = OscCondition::kGust;
   double rise_m_s = 3.0;
-  std::optional<double> speed_m_s;  ///< of kWindAbove and kCalm; nullopt: the usual one
-  std::optional<double> after_s;    ///< how long the condition has to hold; nullopt: the usual time
-  std::string sensor;
+  std::optional<double> speed_m_s = {};  ///< of kWindAbove and kCalm; nullopt: the usual one
+  std::optional<double> after_s = {};    ///< how long the condition has to hold; nullopt: the usual time
+  std::string sensor = {};
   double again_after_s = 20.0;
-  std::string address;
+  std::string address = {};
   friend bool operator==(const OscCue&, const OscCue&) = default;
 
   double limit_m_s() const;
@@ -53,10 +53,10 @@ struct OscCue {
 /// An [[osc]]: whom to send what.
 struct Osc {
   std::string name;
-  std::string to;  ///< HOST:PORT
-  std::optional<double> rate_hz;
-  std::string send;  ///< words of kOscParts, or kOscMappedOnly
-  std::string prefix;
+  std::string to = {};  ///< HOST:PORT
+  std::optional<double> rate_hz = {};
+  std::string send = {};  ///< words of kOscParts, or kOscMappedOnly
+  std::string prefix = {};
   bool bundles = true;
   bool time_tags = false;
   values::Wind wind = values::Wind::kShaped;
