@@ -11,13 +11,13 @@ namespace yuragi::daemon::feeds {
 
 /// What a feed sends, to whom, and whether it can; for a person and for the page.
 struct Status {
-  std::string kind;                       ///< "osc"
-  std::string name;                       ///< as the configuration calls it
-  std::string target;                     ///< "127.0.0.1:9000"
-  std::string sends;                      ///< "wind, sensors, 2 mapped values"
-  std::uint64_t messages = 0, bytes = 0;  ///< sent since the start
-  std::optional<MonoTime> last_sent;      ///< nullopt: never
-  std::string trouble;                    ///< why nothing can be sent at present, and what to do; empty: it can
+  std::string kind = {};                   ///< "osc"
+  std::string name = {};                   ///< as the configuration calls it
+  std::string target = {};                 ///< "127.0.0.1:9000"
+  std::string sends = {};                  ///< "wind, sensors, 2 mapped values"
+  std::uint64_t messages = 0, bytes = 0;   ///< sent since the start
+  std::optional<MonoTime> last_sent = {};  ///< nullopt: never
+  std::string trouble = {};                ///< why nothing can be sent at present, and what to do; empty: it can
 };
 
 /// An output of the wind for other programs. Each is a file of its own; Feeds owns them and calls them on its thread.

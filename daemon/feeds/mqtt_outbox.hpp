@@ -10,7 +10,7 @@ namespace yuragi::daemon::feeds {
 
 /// A message to an MQTT broker.
 struct MqttPost {
-  std::string topic, payload;
+  std::string topic = {}, payload = {};
   bool is_retained = false;
   /// It is sent again after each connection. If it is empty, the earlier one is forgotten.
   bool is_state = false;

@@ -22,15 +22,15 @@ std::string mqtt_sensor_json(const values::SensorValue& sensor);
 
 /// The names of an installation, as they stand in topics.
 struct MqttNames {
-  std::vector<std::string> sensors, scenes, alerts;                 ///< as they are
-  std::vector<std::string> sensor_parts, scene_parts, alert_parts;  ///< parts of topics, no two alike
+  std::vector<std::string> sensors = {}, scenes = {}, alerts = {};                 ///< as they are
+  std::vector<std::string> sensor_parts = {}, scene_parts = {}, alert_parts = {};  ///< parts of topics, no two alike
 };
 MqttNames mqtt_names_of(const values::Names& names, const values::Health& health);
 
 /// What Home Assistant is told of the device.
 struct HomeAssistantDevice {
-  std::string id;   ///< "yuragi_0123456789abcdef", the same for the life of the installation
-  std::string url;  ///< of the page; empty: there is none
+  std::string id = {};   ///< "yuragi_0123456789abcdef", the same for the life of the installation
+  std::string url = {};  ///< of the page; empty: there is none
 };
 
 /// An ID that depends on this machine and the topic alone. Reads /etc/machine-id, which it does not disclose.
@@ -42,7 +42,7 @@ std::string home_assistant_config(const settings::feeds::Mqtt& config, const Hom
 
 /// What a message that came in asks for.
 struct MqttCommand {
-  std::string scene;  ///< its name; empty: the states are wanted again, because Home Assistant has started
+  std::string scene = {};  ///< its name; empty: the states are wanted again, because Home Assistant has started
   bool shown = false;
   friend bool operator==(const MqttCommand&, const MqttCommand&) = default;
 };

@@ -44,14 +44,14 @@ std::optional<std::size_t> index_of(std::span<const std::string> names, std::str
 
 /// An [[alert]] of the configuration.
 struct AlertState {
-  std::string name;
+  std::string name = {};
   bool is_on = false;
   friend bool operator==(const AlertState&, const AlertState&) = default;
 };
 
 /// How the daemon is.
 struct Health {
-  std::vector<AlertState> alerts;
+  std::vector<AlertState> alerts = {};
   bool needs_attention = false;
   friend bool operator==(const Health&, const Health&) = default;
 };

@@ -17,7 +17,7 @@ namespace yuragi::daemon::values {
 
 /// A point on the ground whose wind is sent, metres east and south of the middle of the scenes.
 struct Place {
-  std::string name;
+  std::string name = {};
   double east_m = 0.0, south_m = 0.0;
   friend bool operator==(const Place&, const Place&) = default;
 };

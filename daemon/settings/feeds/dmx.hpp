@@ -28,9 +28,9 @@ inline constexpr std::size_t kMaxDmxPixels = 1024;
 struct DmxChannel {
   std::size_t channel = 1;
   int bits = 8;
-  std::string value_text;
-  std::optional<Span> given_from, given_to;
-  Span from, to;
+  std::string value_text = {};
+  std::optional<Span> given_from = {}, given_to = {};
+  Span from = {}, to = {};
   double curve = 1.0;
   double least = 0.0;
   double slew_s = 0.0;
@@ -58,11 +58,11 @@ struct DmxColors {
 /// divided between universes.
 struct DmxGrid {
   std::size_t channel = 1;  ///< of the first pixel; in the universes after the first it is 1
-  values::Grid grid;
-  std::string value_text;
-  std::optional<Span> given_from;
-  Span from;
-  DmxColors to;
+  values::Grid grid = {};
+  std::string value_text = {};
+  std::optional<Span> given_from = {};
+  Span from = {};
+  DmxColors to = {};
   double curve = 1.0;
   DmxColor rest{0, 0, 0};
   friend bool operator==(const DmxGrid&, const DmxGrid&) = default;
@@ -81,11 +81,11 @@ inline constexpr std::string_view kDmxMulticast = "multicast";
 
 /// A [[dmx]]: levels for lamps, fans and LED walls, by E1.31 (sACN) or Art-Net.
 struct Dmx {
-  std::string name;
+  std::string name = {};
   int universe = 1;
   DmxProtocol protocol = DmxProtocol::kSacn;
-  std::string to;         ///< HOST, HOST:PORT or kDmxMulticast
-  std::string interface;  ///< own address on the network for multicast; empty: the system chooses
+  std::string to = {};         ///< HOST, HOST:PORT or kDmxMulticast
+  std::string interface = {};  ///< own address on the network for multicast; empty: the system chooses
   int priority = 100;
   std::vector<DmxChannel> channels = {};
   std::vector<DmxGrid> grids = {};

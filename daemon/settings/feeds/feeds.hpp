@@ -15,10 +15,10 @@ namespace yuragi::daemon::settings::feeds {
 
 /// What is sent to other programs: the typed form of the lists of list_tables(), and of [mqtt].
 struct Config {
-  std::vector<values::Place> places;
-  std::vector<Osc> osc;
+  std::vector<values::Place> places = {};
+  std::vector<Osc> osc = {};
   std::vector<Dmx> dmx = {};
-  Mqtt mqtt;  ///< of its own table
+  Mqtt mqtt = {};  ///< of its own table
   std::vector<Nmea> nmea = {};
 
   friend bool operator==(const Config&, const Config&) = default;

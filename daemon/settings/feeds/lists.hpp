@@ -15,7 +15,7 @@ namespace yuragi::daemon::settings::feeds {
 
 /// An entry of a list as it is written: its values, and those of the lists below it.
 struct Entry {
-  std::string name;  ///< empty in a list below another
+  std::string name = {};  ///< empty in a list below another
   ParameterValues values{};
   std::map<std::string_view, std::vector<ParameterValues>> below{};
 };

@@ -13,17 +13,17 @@ namespace yuragi::daemon::settings::feeds {
 
 /// [mqtt]: the broker to which the wind is published.
 struct Mqtt {
-  std::string host;  ///< empty: nothing is published
+  std::string host = {};  ///< empty: nothing is published
   std::uint16_t port = 0;
-  std::string user;  ///< empty: none
+  std::string user = {};  ///< empty: none
   Secret password;
-  std::string password_file;  ///< empty: none
+  std::string password_file = {};  ///< empty: none
   bool uses_tls = false;
-  std::string ca_file;  ///< empty: the certificates of the system
-  std::string topic;    ///< of all messages, without a slash at the end
+  std::string ca_file = {};  ///< empty: the certificates of the system
+  std::string topic = {};    ///< of all messages, without a slash at the end
   double every_s = 0.0;
-  double fast_hz = 0.0;        ///< 0: off
-  std::string home_assistant;  ///< prefix of Home Assistant's discovery; empty: off
+  double fast_hz = 0.0;             ///< 0: off
+  std::string home_assistant = {};  ///< prefix of Home Assistant's discovery; empty: off
   bool takes_commands = false;
   values::Wind wind = values::Wind::kShaped;
   friend bool operator==(const Mqtt&, const Mqtt&) = default;

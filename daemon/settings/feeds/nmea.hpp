@@ -12,9 +12,9 @@ namespace yuragi::daemon::settings::feeds {
 
 /// An [[nmea]]: the wind as sentences of NMEA 0183.
 struct Nmea {
-  std::string name;
-  std::string to;      ///< HOST:PORT by UDP; empty: not
-  std::string listen;  ///< HOST:PORT for clients by TCP; empty: not
+  std::string name = {};
+  std::string to = {};      ///< HOST:PORT by UDP; empty: not
+  std::string listen = {};  ///< HOST:PORT for clients by TCP; empty: not
   double rate_hz = 1.0;
   values::Wind wind = values::Wind::kShaped;
   friend bool operator==(const Nmea&, const Nmea&) = default;

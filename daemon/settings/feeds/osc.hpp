@@ -18,8 +18,8 @@ namespace yuragi::daemon::settings::feeds {
 
 /// An [[osc.map]]: a value, brought from one range into another, at an address of the receiver's own.
 struct OscMap {
-  std::string value_text;
-  std::string address;
+  std::string value_text = {};
+  std::string address = {};
   std::optional<Span> given_from = {};
   Span from = {}, to = {};
   double curve = 1.0;
@@ -52,7 +52,7 @@ struct OscCue {
 
 /// An [[osc]]: whom to send what.
 struct Osc {
-  std::string name;
+  std::string name = {};
   std::string to = {};  ///< HOST:PORT
   std::optional<double> rate_hz = {};
   std::string send = {};  ///< words of kOscParts, or kOscMappedOnly

@@ -119,9 +119,9 @@ TEST_F(SiteTest, WhatIsNoFileOrTooLargeIsRefused) {
 
 TEST_F(SiteTest, AnswersOnItsThread_OrThatThereIsNone) {
   const auto answer = [](Site& site) {
-    std::promise<HttpResponse> answer;
-    site.answer({.method = "GET", .path = "/site/"}, [&](HttpResponse response) { answer.set_value(response); });
-    return answer.get_future().get();
+    std::promise<HttpResponse> given;
+    site.answer({.method = "GET", .path = "/site/"}, [&](HttpResponse response) { given.set_value(response); });
+    return given.get_future().get();
   };
   Site site(folder_);
   EXPECT_EQ(answer(site).body, "<p>home");
