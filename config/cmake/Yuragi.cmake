@@ -327,7 +327,9 @@ function(yuragi_join name)
         set_property(TARGET ${joined} APPEND PROPERTY ${property} ${values})
       endif()
     endforeach()
-    if(type STREQUAL EXECUTABLE) # its main() is found in the library
+    if(type STREQUAL EXECUTABLE) # its main() is found in the library, which therefore needs what the program links
+      get_target_property(links ${target} LINK_LIBRARIES)
+      target_link_libraries(${joined} PUBLIC ${links})
       target_link_libraries(${target} PRIVATE ${joined})
     else()
       target_link_libraries(${joined} PUBLIC ${target})
