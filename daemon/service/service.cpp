@@ -34,6 +34,7 @@
 #include "daemon/service/config_check.hpp"
 #include "daemon/service/hangup.hpp"
 #include "daemon/service/lead_in.hpp"
+#include "daemon/service/moment_source.hpp"
 #include "daemon/service/parameter_director.hpp"
 #include "daemon/service/reload.hpp"
 #include "daemon/service/reload_report.hpp"
@@ -42,7 +43,6 @@
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/state/attention.hpp"
 #include "daemon/stream/tcp_stream.hpp"
-#include "daemon/values/moment_maker.hpp"
 #include "daemon/web/access.hpp"
 #include "daemon/web/guide.hpp"
 #include "daemon/web/web_server.hpp"
@@ -102,23 +102,6 @@ std::vector<look::Camera> cameras_of(const settings::Config& config) {
   return cameras;
 }
 
-/// Which speeds are 0.5 and 1 of `norm`.
-struct Norms {
-  values::NormScale unknown;                ///< while the site's winds are not known
-  std::optional<values::NormScale> shaped;  ///< of the shaped wind, if the site's winds are scaled to these
-};
-
-Norms norms_of(const settings::ShapingConfig& shaping) {
-  Norms norms{.unknown = {.median_m_s = 0.5 * shaping.norm_speed_m_s, .strong_m_s = shaping.norm_speed_m_s},
-              .shaped = {}};
-  const wind::shaping::SiteRange& site = shaping.settings.site;
-  if (site.median_m_s > 0.0) {
-    norms.shaped = {.median_m_s = site.median_m_s,
-                    .strong_m_s = site.strong_m_s > 0.0 ? site.strong_m_s : 2.0 * site.median_m_s};
-  }
-  return norms;
-}
-
 /// The page's address for other machines. `endpoint`: where it listens.
 std::string page_url(const std::string& endpoint) {
   Address address = parse_address(endpoint).value();
@@ -145,8 +128,7 @@ class Service::Io {
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0,
              options.lead_s > 0.0 ? sensing::SensorThread::kOfCaller : sensing::SensorThread::kOwn),
         shaper_(config, gusts_),
-        moments_(gusts_),
-        norms_(norms_of(config.shaping)),
+        moments_(config, gusts_),
         look_(config.look),
         cameras_(cameras_of(config)),
         clock_of_cameras_(config.clock),
@@ -169,9 +151,6 @@ class Service::Io {
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
     if (options.record) history_ = make_history(*options.record);
-    moments_.set_sensors(settings::names_of(config).sensors);
-    moments_.set_places(config.feeds.places, config.feeds.wants_real_places());
-    moments_.set_grids(config.feeds.grids());
     read_token();
     open_page();
     for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
@@ -193,7 +172,7 @@ class Service::Io {
     if (options_.lead_s > 0.0) {
       spdlog::info("warming up: the scenes run through the {:g} s before the beginning", options_.lead_s);
       lead_in(
-          options_.lead_s, rate_hz_, clock_, hub_, [this] { return next_wind(); }, *animation_);
+          options_.lead_s, rate_hz_, clock_, hub_, [this] { return shaped(next_real_wind()); }, *animation_);
     }
     // Not before: during the set-up, which may wait for a disk or a network, these signals end the program at once.
     for (const int signal : {SIGINT, SIGTERM}) signals_.add(signal);
@@ -453,10 +432,9 @@ class Service::Io {
     parameters_.allow(control_);
     show_look(next.look);
     if (alerts_) alerts_->change(next.alerts);
-    norms_ = norms_of(next.shaping);
+    moments_.change(next.shaping);
     if (plan.changes_feeds) {
-      moments_.set_places(next.feeds.places, next.feeds.wants_real_places());
-      moments_.set_grids(next.feeds.grids());
+      moments_.change(next.feeds);
       feeds_->change(next.feeds);
     }
     stream_.set_admission(admission_of(next.stream));
@@ -511,57 +489,27 @@ class Service::Io {
   }
 
   /// Takes readings and advances the wind.
-  wind::ground::DrivingWind next_wind() {
-    wind::ground::DrivingWind wind = next_real_wind();
+  wind::ground::DrivingWind next_real_wind() { return {hub_.advance(), hub_.ground(), hub_.stroke()}; }
+
+  wind::ground::DrivingWind shaped(wind::ground::DrivingWind wind) {
     shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live());
     return wind;
   }
 
-  wind::ground::DrivingWind next_real_wind() { return {hub_.advance(), hub_.ground(), hub_.stroke()}; }
-
   /// Gives the animation the next wind, and other programs what they get of it.
   void advance_wind() {
     const wind::ground::DrivingWind real = next_real_wind();
-    wind::ground::DrivingWind shaped = real;
-    shaper_.shape(shaped, time_for_the_hours(), hub_.is_any_live());
-    wind_.publish(shaped);
-    contain("what other programs get of the wind", [&] { publish_moment(real, shaped); });
+    const wind::ground::DrivingWind driving = shaped(real);
+    wind_.publish(driving);
+    contain("what other programs get of the wind", [&] {
+      const auto moment = moments_.make(real, driving, shaper_.report(), clock_.now(), hub_.values());
+      feeds_->publish(moment);
+      if (web_) web_->publish_moment(moment);
+    });
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     manager_.went_round(clock_.now().mono, loop_ ? loop_->counters().ticks.load(std::memory_order_relaxed) : 0);
     if (options_.end_with_recordings && hub_.is_finished()) end("the recording has ended");
-  }
-
-  void publish_moment(const wind::ground::DrivingWind& real, const wind::ground::DrivingWind& shaped) {
-    const Instant now = clock_.now();
-    const double dt_s = moment_made_ ? seconds(now.mono - *moment_made_) : 0.0;
-    moment_made_ = now.mono;
-    const wire::Shaping shaping = shaper_.status();
-    const bool is_site_known = shaping.site_median_m_s > 0.0 && shaping.site_strong_m_s > shaping.site_median_m_s;
-    const values::NormScale real_scale =
-        is_site_known ? values::NormScale{.median_m_s = shaping.site_median_m_s, .strong_m_s = shaping.site_strong_m_s}
-                      : norms_.unknown;
-    const auto moment = moments_.make({.real = real,
-                                       .shaped = shaped,
-                                       .real_scale = real_scale,
-                                       .shaped_scale = norms_.shaped.value_or(real_scale),
-                                       .time = now,
-                                       .dt_s = dt_s,
-                                       .openness = shaping.openness},
-                                      hub_.values(), opacities_);
-    feeds_->publish(moment);
-    if (web_) web_->publish_moment(moment);
-  }
-
-  /// Of the scenes in the newest frame; none while scenes are exchanged, when their names are not those of the frame.
-  void note_opacities(const animation::PublishedFrame& frame) {
-    opacities_.clear();
-    if (scenes_->is_changing()) return;
-    std::vector<std::string> names;
-    for (const auto& scene : scenes_->present()->configs) names.push_back(scene.name);
-    if (names != moments_.names().scenes) moments_.set_scenes(std::move(names));
-    opacities_.assign(frame.opacities.begin(),
-                      frame.opacities.begin() + static_cast<std::ptrdiff_t>(frame.scene_count));
   }
 
   /// Advances the wind at the rate of the animation.
@@ -604,7 +552,7 @@ class Service::Io {
     const auto bytes = std::make_shared<const wire::Bytes>(frame->bytes);
     stream_.publish(bytes);
     if (web_) web_->publish(bytes);
-    note_opacities(*frame);
+    moments_.note_frame(*frame, *scenes_);
     exchange_scenes();
     is_up_ = true;
     report_ready();
@@ -754,10 +702,7 @@ class Service::Io {
   stream::TcpStream stream_;
   sensing::SensorHub hub_;
   shaping::WindShaper shaper_;
-  values::MomentMaker moments_;
-  Norms norms_;
-  std::optional<MonoTime> moment_made_;
-  std::vector<double> opacities_;
+  MomentSource moments_;
   std::optional<feeds::Feeds> feeds_;
   look::Look look_;                    // for the viewers
   std::vector<look::Camera> cameras_;  // for them, too

@@ -54,6 +54,8 @@ class WindShaper {
 
   /// The effects at present, as of the last shape().
   wire::Shaping status() const;
+  /// The same without its text, for each tick.
+  wind::shaping::WindShapingReport report() const noexcept { return shaping_.report(); }
 
  private:
   void look_at_hours(MonoTime now, UtcTime utc);
