@@ -22,10 +22,10 @@ class DmxUniverse {
   /// (E1.31 6.6.2 and Art-Net: every 0.8 to 1 s).
   void send(const DmxLevels& levels, MonoTime now);
 
-  /// Sends them in any case. `is_terminated`: the receivers are told that no more comes, if the protocol can do so.
+  /// Sends them in any case. `is_terminated`: marks the end of the stream (E1.31 alone).
   void send_now(const DmxLevels& levels, MonoTime now, bool is_terminated = false);
 
-  /// Sends them three times, and that no more comes.
+  /// Sends them three times; by E1.31 three "terminated" packets follow.
   void finish(const DmxLevels& levels, MonoTime now);
 
   /// Art-Net: receivers take packets in any order from now on. E1.31 cannot do so.

@@ -1,19 +1,17 @@
 #include "daemon/feeds/mqtt_texts.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/feeds/component_id.hpp"
 #include "daemon/feeds/osc_addresses.hpp"
 #include "engine/base/json_text.hpp"
 #include "engine/base/version.hpp"
 #include "engine/math/philox.hpp"
-#include "engine/platform/whole_file.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::daemon::feeds {
@@ -25,7 +23,6 @@ using values::Quantity;
 /// Below this mean wind there is no direction.
 constexpr double kCalm_m_s = 0.2;
 constexpr double kExpireAfter_s = 60.0;
-constexpr std::size_t kMaxMachineId = 4096;
 
 /// To a thousandth; null if it is not known.
 Json number(double value) {
@@ -39,13 +36,6 @@ Json direction(wind::Vector wind) {
   return static_cast<int>(std::lround(wind::direction_from_deg(wind))) % 360;
 }
 
-std::string utc_text(UtcTime utc) {
-  const auto ms = std::chrono::floor<std::chrono::milliseconds>(utc).time_since_epoch();
-  const auto whole = std::chrono::floor<std::chrono::seconds>(ms);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(whole.count())),
-                     (ms - whole).count());
-}
-
 }  // namespace
 
 std::string mqtt_wind_json(const WindWindow::Summary& wind, double live, const values::Moment& moment) {
@@ -56,7 +46,7 @@ std::string mqtt_wind_json(const WindWindow::Summary& wind, double live, const v
                         {"norm", number(wind.norm)},
                         {"live", number(live)},
                         {"source", values::name_of(moment.source)},
-                        {"utc", utc_text(moment.utc)}});
+                        {"utc", values::utc_text(moment.utc)}});
 }
 
 std::string mqtt_fast_json(const values::Readout& wind, const values::Moment& moment) {
@@ -67,7 +57,7 @@ std::string mqtt_fast_json(const values::Readout& wind, const values::Moment& mo
                         {"norm", number(wind[Quantity::kNorm])},
                         {"gust_norm", number(wind[Quantity::kGustNorm])},
                         {"live", number(wind[Quantity::kLive])},
-                        {"utc", utc_text(moment.utc)}});
+                        {"utc", values::utc_text(moment.utc)}});
 }
 
 std::string mqtt_sensor_json(const values::SensorValue& sensor) {
@@ -90,8 +80,7 @@ MqttNames mqtt_names_of(const values::Names& names, const values::Health& health
 }
 
 std::string home_assistant_id(const std::string& topic) {
-  const auto machine = platform::read_whole("/etc/machine-id", kMaxMachineId);
-  return fmt::format("yuragi_{:016x}", math::stream_id((machine ? *machine : std::string()) + topic));
+  return fmt::format("yuragi_{:016x}", math::stream_id(machine_id() + topic));
 }
 
 std::string home_assistant_config(const settings::feeds::Mqtt& config, const HomeAssistantDevice& device,

@@ -27,7 +27,7 @@ struct MqttNames {
 };
 MqttNames mqtt_names_of(const values::Names& names, const values::Health& health);
 
-/// What Home Assistant is told of the device.
+/// The device as Home Assistant knows it.
 struct HomeAssistantDevice {
   std::string id = {};   ///< "yuragi_0123456789abcdef", the same for the life of the installation
   std::string url = {};  ///< of the page; empty: there is none

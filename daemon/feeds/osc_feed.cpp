@@ -55,10 +55,10 @@ class OscFeed final : public Feed {
     add_cues(moment);
     if (!ticks_ || ticks_->is_due(moment.time_s)) {
       const bool with_states = states_.is_due(moment.time_s);
-      if (config_.sends("wind")) add_wind(moment, with_states);
-      if (config_.sends("sensors")) add_sensors(moment, with_states);
-      if (config_.sends("places")) add_places(moment);
-      if (config_.sends("scenes")) add_scenes(moment, with_states);
+      if (sends_wind_) add_wind(moment, with_states);
+      if (sends_sensors_) add_sensors(moment, with_states);
+      if (sends_places_) add_places(moment);
+      if (sends_scenes_) add_scenes(moment, with_states);
       add_maps(moment);
     }
     send_messages(moment);
@@ -183,6 +183,8 @@ class OscFeed final : public Feed {
   }
 
   Osc config_;
+  const bool sends_wind_ = config_.sends("wind"), sends_sensors_ = config_.sends("sensors"),
+             sends_places_ = config_.sends("places"), sends_scenes_ = config_.sends("scenes");
   DatagramTarget target_;
   std::vector<Mapping> maps_;
   std::vector<CueTrigger> cues_;

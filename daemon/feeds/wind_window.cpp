@@ -24,23 +24,8 @@ void WindWindow::add(const values::Readout& wind, double time_s) {
   sums_.v_m_s += last_.v_m_s * dt_s;
   sums_.norm += last_.norm * dt_s;
   time_s_ += dt_s;
-  add_to_gust(speed_m_s, dt_s);
-}
-
-void WindWindow::add_to_gust(double speed_m_s, double dt_s) {
-  parts_[part_].value += speed_m_s * dt_s;
-  parts_[part_].time_s += dt_s;
-  since_part_s_ += dt_s;
-  Sum all;
-  for (const Sum& part : parts_) {
-    all.value += part.value;
-    all.time_s += part.time_s;
-  }
-  sums_.strongest_3_s_m_s = std::max(sums_.strongest_3_s_m_s, all.value / all.time_s);
-  if (since_part_s_ < kPart_s) return;
-  since_part_s_ = 0.0;
-  part_ = (part_ + 1) % kParts;
-  parts_[part_] = {};
+  const double gust_m_s = gust_.add(speed_m_s, dt_s).value_or(gust_.mean());
+  sums_.strongest_3_s_m_s = std::max(sums_.strongest_3_s_m_s, gust_m_s);
 }
 
 WindWindow::Summary WindWindow::take() {

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-
 #include "daemon/values/quantity.hpp"
+#include "daemon/values/three_second_mean.hpp"
 
 namespace yuragi::daemon::feeds {
 
@@ -25,21 +23,11 @@ class WindWindow {
   Summary take();
 
  private:
-  static constexpr std::size_t kParts = 12;  ///< of 3 s, in quarters of a second
-  static constexpr double kPart_s = 0.25;
-
-  struct Sum {
-    double value = 0.0, time_s = 0.0;
-  };
-  void add_to_gust(double speed_m_s, double dt_s);
-
   Summary sums_, last_;
   double time_s_ = 0.0;
   bool is_first_ = true;
   double before_s_ = 0.0;
-  std::array<Sum, kParts> parts_{};
-  std::size_t part_ = 0;
-  double since_part_s_ = 0.0;
+  values::ThreeSecondMean gust_;
 };
 
 }  // namespace yuragi::daemon::feeds

@@ -12,7 +12,6 @@ namespace {
 constexpr double kUsualIntensity = 0.2;
 constexpr double kUsualFor_s = 10.0;
 constexpr double kMinDeviation_m_s = 0.05;
-constexpr double kPart_s = 0.25;
 /// Below this speed the direction is kept.
 constexpr double kMinDirected_m_s = 0.05;
 
@@ -33,7 +32,8 @@ void Meter::add(wind::Vector wind, double live, double age_s, double dt_s, const
   const double before_m_s = second_ == 0 && speeds_[0].time_s == 0.0 ? speed_m_s : mean_m_s();
   speeds_[second_ % kMean_s].add(speed_m_s, step_s);
   squares_[second_ % kGusts_s].add((speed_m_s - before_m_s) * (speed_m_s - before_m_s), step_s);
-  add_to_peak(speed_m_s, step_s);
+  double& strongest_m_s = strongest_m_s_[second_ % kGusts_s];
+  if (const auto gust_m_s = gust_.add(speed_m_s, step_s)) strongest_m_s = std::max(strongest_m_s, *gust_m_s);
   since_second_s_ += step_s;
   for (; since_second_s_ >= 1.0; since_second_s_ -= 1.0) turn_second();
 
@@ -53,33 +53,19 @@ void Meter::add(wind::Vector wind, double live, double age_s, double dt_s, const
   set(Quantity::kAge, live > 0.0 ? std::max(age_s, 0.0) : readout_[Quantity::kAge] + step_s);
 }
 
-void Meter::add_to_peak(double speed_m_s, double dt_s) noexcept {
-  parts_[part_].add(speed_m_s, dt_s);
-  since_part_s_ += dt_s;
-  if (since_part_s_ < kPart_s) return;
-  Sum together;
-  for (const Sum& part : parts_) together.add(part.mean(), part.time_s);
-  double& strongest = strongest_m_s_[second_ % kGusts_s];
-  strongest = std::max(strongest, together.mean());
-  for (; since_part_s_ >= kPart_s; since_part_s_ -= kPart_s) {
-    part_ = (part_ + 1) % kPeakParts;
-    parts_[part_] = {};
-  }
-}
-
 void Meter::turn_second() noexcept {
-  const auto move_on = [this](auto& ring, Sum& all) {
-    const Sum& over = ring[second_ % ring.size()];
+  const auto move_on = [this](auto& ring, TimeSum& all) {
+    const TimeSum& over = ring[second_ % ring.size()];
     all.value += over.value;
     all.time_s += over.time_s;
-    Sum& next = ring[(second_ + 1) % ring.size()];
+    TimeSum& next = ring[(second_ + 1) % ring.size()];
     all.value -= next.value;
     all.time_s -= next.time_s;
     next = {};
     // Rounding errors do not grow over months.
     if ((second_ + 1) % ring.size() != 0) return;
     all = {};
-    for (const Sum& kept : ring) {
+    for (const TimeSum& kept : ring) {
       all.value += kept.value;
       all.time_s += kept.time_s;
     }
@@ -92,13 +78,13 @@ void Meter::turn_second() noexcept {
 }
 
 double Meter::mean_m_s() const noexcept {
-  const Sum& present = speeds_[second_ % kMean_s];
+  const TimeSum& present = speeds_[second_ % kMean_s];
   const double time_s = all_speeds_.time_s + present.time_s;
   return time_s > 0.0 ? (all_speeds_.value + present.value) / time_s : 0.0;
 }
 
 double Meter::gust_deviation_m_s(double mean_m_s) const noexcept {
-  const Sum& present = squares_[second_ % kGusts_s];
+  const TimeSum& present = squares_[second_ % kGusts_s];
   const double usual_m_s = kUsualIntensity * mean_m_s;
   const double value = all_squares_.value + present.value + kUsualFor_s * usual_m_s * usual_m_s;
   const double deviation_m_s = std::sqrt(std::max(value, 0.0) / (all_squares_.time_s + present.time_s + kUsualFor_s));

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "daemon/values/quantity.hpp"
+#include "daemon/values/three_second_mean.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::daemon::values {
@@ -30,31 +31,19 @@ class Meter {
 
  private:
   static constexpr std::size_t kMean_s = 100, kGusts_s = 600;
-  static constexpr std::size_t kPeakParts = 12;  ///< 3 s, in quarters of a second
 
-  struct Sum {
-    double value = 0.0, time_s = 0.0;
-    void add(double what, double dt_s) noexcept {
-      value += what * dt_s;
-      time_s += dt_s;
-    }
-    double mean() const noexcept { return time_s > 0.0 ? value / time_s : 0.0; }
-  };
-
-  void add_to_peak(double speed_m_s, double dt_s) noexcept;
   void turn_second() noexcept;
   double mean_m_s() const noexcept;
   double gust_deviation_m_s(double mean_m_s) const noexcept;
 
-  std::array<Sum, kMean_s> speeds_{};                 ///< of the last seconds
-  std::array<Sum, kGusts_s> squares_{};               ///< of the gust
-  std::array<double, kGusts_s> strongest_m_s_{};      ///< 3 s that ended in each of the last seconds
-  std::array<Sum, kPeakParts> parts_{};               ///< quarters of a second
-  std::size_t part_ = 0;                              ///< that is being filled
-  std::size_t second_ = 0;                            ///< since the beginning
-  double since_part_s_ = 0.0, since_second_s_ = 0.0;  ///< what the present ones have lasted
-  Sum all_speeds_, all_squares_;                      ///< of the seconds that are over and not yet forgotten
-  double peak_m_s_ = 0.0;                             ///< of the seconds that are over
+  std::array<TimeSum, kMean_s> speeds_{};         ///< of the last seconds
+  std::array<TimeSum, kGusts_s> squares_{};       ///< of the gust
+  std::array<double, kGusts_s> strongest_m_s_{};  ///< 3 s that ended in each of the last seconds
+  ThreeSecondMean gust_;
+  std::size_t second_ = 0;            ///< since the beginning
+  double since_second_s_ = 0.0;       ///< what the present one has lasted
+  TimeSum all_speeds_, all_squares_;  ///< of the seconds that are over and not yet forgotten
+  double peak_m_s_ = 0.0;             ///< of the seconds that are over
   Readout readout_;
 };
 

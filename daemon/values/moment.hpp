@@ -78,6 +78,9 @@ struct Moment {
   }
 };
 
+/// ISO 8601 with milliseconds: "2026-11-29T02:40:14.250Z".
+std::string utc_text(UtcTime utc);
+
 /// "live", "handover" or "default".
 std::string_view name_of(wind::Source source) noexcept;
 

@@ -1,10 +1,8 @@
 #include "daemon/web/moment_text.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -28,19 +26,12 @@ std::string values_of(const values::Readout& readout) {
   return text;
 }
 
-std::string iso_text(UtcTime utc) {
-  const auto milliseconds = std::chrono::floor<std::chrono::milliseconds>(utc);
-  const auto whole = std::chrono::floor<std::chrono::seconds>(milliseconds);
-  const std::time_t time = std::chrono::system_clock::to_time_t(whole);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(time), (milliseconds - whole).count());
-}
-
 }  // namespace
 
 std::string moment_text(const values::Moment& moment, std::span<const std::string> places) {
   std::string text =
       fmt::format("{{\"t\":{:.6f},\"utc\":\"{}\",\"wind\":{{{},\"source\":\"{}\"}},\"places\":{{", moment.time_s,
-                  iso_text(moment.utc), values_of(moment.shaped), values::name_of(moment.source));
+                  values::utc_text(moment.utc), values_of(moment.shaped), values::name_of(moment.source));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto index = values::index_of(moment.names->places, places[i]);
     const bool is_known = index && *index < moment.shaped_places.size();

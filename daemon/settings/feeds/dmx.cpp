@@ -340,11 +340,9 @@ Result<DmxChannel, ParameterError> dmx_channel_of(const Dmx& feed, const Paramet
                                                   const values::Names& names) {
   auto channel = made_of(dmx_channel_fields(), values);
   if (!channel) return channel;
-  auto value = values::Reference::parse(channel->value_text);
-  if (!value) return ParameterError{"value", value.error().message};
-  if (auto missing = value->missing_in(names)) return ParameterError{"value", std::move(*missing)};
-  const values::QuantityDescription range = value->description();
-  channel->from = channel->given_from.value_or(Span{range.min, range.max});
+  auto value = value_named(channel->value_text, names);
+  if (!value) return value.error();
+  channel->from = channel->given_from.value_or(range_of(value->description()));
   channel->to = channel->given_to.value_or(Span{0.0, channel->max_level()});
   channel->value = std::move(*value);
   for (const auto& [key, level] : {std::pair{"to", channel->to.from}, std::pair{"to", channel->to.to},
@@ -369,8 +367,7 @@ Result<DmxGrid, ParameterError> dmx_grid_of(const Dmx& feed, const ParameterValu
     return ParameterError{"value", fmt::format("is \"{}\"; allowed: {}", grid->value_text, fmt::join(known, ", "))};
   }
   grid->grid.quantity = *quantity;
-  const values::QuantityDescription& range = values::description_of(*quantity);
-  grid->from = grid->given_from.value_or(Span{range.min, range.max});
+  grid->from = grid->given_from.value_or(range_of(values::description_of(*quantity)));
   if (grid->grid.size() > kMaxDmxPixels)
     return ParameterError{"columns",
                           fmt::format("and rows make {} pixels (maximum {})", grid->grid.size(), kMaxDmxPixels)};

@@ -220,11 +220,9 @@ Result<Osc, ParameterError> osc_of(std::string name, const ParameterValues& valu
 Result<OscMap, ParameterError> osc_map_of(const ParameterValues& values, const values::Names& names) {
   auto map = made_of(osc_map_fields(), values);
   if (!map) return map;
-  auto value = values::Reference::parse(map->value_text);
-  if (!value) return ParameterError{"value", value.error().message};
-  if (auto missing = value->missing_in(names)) return ParameterError{"value", std::move(*missing)};
-  const values::QuantityDescription range = value->description();
-  map->from = map->given_from.value_or(Span{range.min, range.max});
+  auto value = value_named(map->value_text, names);
+  if (!value) return value.error();
+  map->from = map->given_from.value_or(range_of(value->description()));
   map->value = std::move(*value);
   return map;
 }

@@ -22,4 +22,11 @@ Result<Span, Failure> span_of(std::string_view text) {
   return Failure{fmt::format("is \"{}\"; give two different numbers: \"0 12\"", text)};
 }
 
+Result<values::Reference, ParameterError> value_named(const std::string& text, const values::Names& names) {
+  auto value = values::Reference::parse(text);
+  if (!value) return ParameterError{"value", value.error().message};
+  if (auto missing = value->missing_in(names)) return ParameterError{"value", std::move(*missing)};
+  return {boost::system::in_place_value, std::move(*value)};
+}
+
 }  // namespace yuragi::daemon::settings::feeds

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "daemon/values/moment.hpp"
+#include "daemon/values/quantity.hpp"
+#include "daemon/values/reference.hpp"
 #include "engine/base/fields.hpp"
 #include "engine/base/result.hpp"
 
@@ -22,6 +26,14 @@ struct Span {
 
 /// "0 12": two different numbers.
 Result<Span, Failure> span_of(std::string_view text);
+
+/// The usual range of a value.
+inline Span range_of(const values::QuantityDescription& value) {
+  return {value.min, value.max};
+}
+
+/// The value that the key `value` names; an error if the installation does not have it.
+Result<values::Reference, ParameterError> value_named(const std::string& text, const values::Names& names);
 
 /// The settings of values whose conversions may refuse one.
 template <class Made>
