@@ -49,7 +49,7 @@ test_packages=(
   qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine
 )
 
-# playwright-core, axe-core and p5 of tests/e2e/browser, where npm can get them.
+# The packages of tests/e2e/browser, where npm can get them.
 install_browser_tools() {
   local from=tests/e2e/browser to=build/browser
   cmp -s $from/package-lock.json $to/package-lock.json && [ -d $to/node_modules ] && return

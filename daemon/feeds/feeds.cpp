@@ -12,6 +12,7 @@
 #include "daemon/feeds/mqtt_feed.hpp"
 #include "daemon/feeds/nmea_feed.hpp"
 #include "daemon/feeds/osc_feed.hpp"
+#include "daemon/feeds/osc_query_feed.hpp"
 #include "engine/base/contain.hpp"
 
 namespace yuragi::daemon::feeds {
@@ -21,13 +22,14 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 constexpr auto kLongestFarewell = std::chrono::seconds(1);
 
 /// The configuration of one feed.
-using AnyConfig =
-    std::variant<settings::feeds::Osc, settings::feeds::Dmx, settings::feeds::Nmea, settings::feeds::Mqtt>;
+using AnyConfig = std::variant<settings::feeds::Osc, settings::feeds::Dmx, settings::feeds::Nmea, settings::feeds::Mqtt,
+                               settings::feeds::OscQuery>;
 
 std::vector<AnyConfig> all_of(const settings::feeds::Config& config) {
   std::vector<AnyConfig> all(config.osc.begin(), config.osc.end());
   all.insert(all.end(), config.dmx.begin(), config.dmx.end());
   if (!config.mqtt.host.empty()) all.emplace_back(config.mqtt);
+  if (!config.osc_query.listen.empty()) all.emplace_back(config.osc_query);
   all.insert(all.end(), config.nmea.begin(), config.nmea.end());
   return all;
 }
@@ -40,6 +42,9 @@ std::unique_ptr<Feed> make_feed(const settings::feeds::Dmx& dmx, const Surroundi
 }
 std::unique_ptr<Feed> make_feed(const settings::feeds::Mqtt& mqtt, const Surroundings& around) {
   return make_mqtt_feed(mqtt, around);
+}
+std::unique_ptr<Feed> make_feed(const settings::feeds::OscQuery& osc_query, const Surroundings& around) {
+  return make_osc_query_feed(osc_query, around);
 }
 std::unique_ptr<Feed> make_feed(const settings::feeds::Nmea& nmea, const Surroundings&) {
   return make_nmea_feed(nmea);

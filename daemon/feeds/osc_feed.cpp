@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,14 +23,14 @@ namespace {
 
 using settings::feeds::Osc;
 using settings::feeds::OscMap;
-using values::Quantity;
 
 using Message = std::vector<std::uint8_t>;
 
 constexpr std::size_t kMaxDatagram = 1400;
 constexpr std::size_t kBundleHead = 16, kElementHead = 4;
-constexpr double kSensorsEvery_s = 0.1;
-constexpr double kStatesEvery_s = 1.0;
+constexpr double kTenth_s = 0.1;
+/// What is sent when it changes also comes at this interval, for a receiver that begins later.
+constexpr double kUnchangedEvery_s = 1.0;
 
 /// An [[osc.map]] as it runs.
 struct Mapping {
@@ -54,11 +53,7 @@ class OscFeed final : public Feed {
     messages_.clear();
     add_cues(moment);
     if (!ticks_ || ticks_->is_due(moment.time_s)) {
-      const bool with_states = states_.is_due(moment.time_s);
-      if (sends_wind_) add_wind(moment, with_states);
-      if (sends_sensors_) add_sensors(moment, with_states);
-      if (sends_places_) add_places(moment);
-      if (sends_scenes_) add_scenes(moment, with_states);
+      add_values(moment);
       add_maps(moment);
     }
     send_messages(moment);
@@ -83,66 +78,23 @@ class OscFeed final : public Feed {
   void rename(const values::Moment& moment) {
     if (moment.names == names_) return;
     names_ = moment.names;
-    sensors_ = osc_parts_of(names_->sensors);
-    places_ = osc_parts_of(names_->places);
-    scenes_ = osc_parts_of(names_->scenes);
-    states_sent_.assign(sensors_.size(), std::nullopt);
-    opacities_sent_.assign(scenes_.size(), std::nullopt);
+    addresses_ = osc_addresses_of(*names_);
+    std::erase_if(addresses_, [this](const OscAddress& address) { return !config_.sends(address.part); });
+    sent_.assign(addresses_.size(), {});
   }
 
-  void add(const std::string& address, std::initializer_list<double> numbers) {
-    std::vector<float> floats;
-    for (const double number : numbers) floats.push_back(static_cast<float>(number));
-    messages_.push_back(drivers::bus::encode_osc(config_.prefix + address, floats));
-  }
-
-  void add_text(const std::string& address, std::string_view text) {
-    messages_.push_back(drivers::bus::encode_osc(config_.prefix + address, std::string(text)));
-  }
-
-  /// First speed and direction together, then each value by itself.
-  void add_readout(const std::string& address, const values::Readout& readout) {
-    add(address, {readout[Quantity::kSpeed], readout[Quantity::kDirection]});
-    for (std::size_t i = 0; i < values::kQuantityCount; ++i) {
-      const auto quantity = static_cast<Quantity>(i);
-      add(fmt::format("{}/{}", address, values::description_of(quantity).name), {readout[quantity]});
-    }
-  }
-
-  void add_wind(const values::Moment& moment, bool with_state) {
-    add_readout("/wind", moment.wind(config_.wind));
-    if (!with_state && source_sent_ == moment.source) return;
-    source_sent_ = moment.source;
-    add_text("/wind/state", values::name_of(moment.source));
-  }
-
-  void add_sensors(const values::Moment& moment, bool with_states) {
-    const bool with_values = sensor_values_.is_due(moment.time_s);
-    for (std::size_t i = 0; i < std::min(moment.sensors.size(), sensors_.size()); ++i) {
-      const values::SensorValue& sensor = moment.sensors[i];
-      const std::string address = "/sensor/" + sensors_[i];
-      const std::array<std::pair<std::string_view, double>, 3> parts = {
-          {{"/speed", sensor.speed_m_s}, {"/direction", sensor.direction_deg}, {"/age", sensor.age_s}}};
-      for (const auto& [part, value] : parts) {
-        if (with_values && std::isfinite(value)) add(address + std::string(part), {value});
+  void add_values(const values::Moment& moment) {
+    const bool with_tenths = tenths_.is_due(moment.time_s), with_unchanged = unchanged_.is_due(moment.time_s);
+    for (std::size_t i = 0; i < addresses_.size(); ++i) {
+      const OscAddress& address = addresses_[i];
+      if (address.pace == OscPace::kTenTimesASecond && !with_tenths) continue;
+      auto message = address.message(moment, config_.wind, config_.prefix);
+      if (!message) continue;
+      if (address.pace == OscPace::kOnChange) {
+        if (!with_unchanged && sent_[i] == *message) continue;
+        sent_[i] = *message;
       }
-      if (!with_states && states_sent_[i] == sensor.state) continue;
-      states_sent_[i] = sensor.state;
-      add_text(address + "/state", wind::judging::name_of(sensor.state));
-    }
-  }
-
-  void add_places(const values::Moment& moment) {
-    const std::span<const values::Readout> places = moment.places(config_.wind);
-    for (std::size_t i = 0; i < std::min(places.size(), places_.size()); ++i)
-      add_readout("/place/" + places_[i], places[i]);
-  }
-
-  void add_scenes(const values::Moment& moment, bool with_states) {
-    for (std::size_t i = 0; i < std::min(moment.opacities.size(), scenes_.size()); ++i) {
-      if (!with_states && opacities_sent_[i] == moment.opacities[i]) continue;
-      opacities_sent_[i] = moment.opacities[i];
-      add(fmt::format("/scene/{}/opacity", scenes_[i]), {moment.opacities[i]});
+      messages_.push_back(std::move(*message));
     }
   }
 
@@ -183,19 +135,15 @@ class OscFeed final : public Feed {
   }
 
   Osc config_;
-  const bool sends_wind_ = config_.sends("wind"), sends_sensors_ = config_.sends("sensors"),
-             sends_places_ = config_.sends("places"), sends_scenes_ = config_.sends("scenes");
   DatagramTarget target_;
   std::vector<Mapping> maps_;
   std::vector<CueTrigger> cues_;
   std::optional<Interval> ticks_;  ///< nullopt: each tick
-  Interval sensor_values_{kSensorsEvery_s}, states_{kStatesEvery_s};
+  Interval tenths_{kTenth_s}, unchanged_{kUnchangedEvery_s};
   std::optional<double> mapped_s_;
   std::shared_ptr<const values::Names> names_;
-  std::vector<std::string> sensors_, places_, scenes_;  ///< as parts of addresses
-  std::optional<wind::Source> source_sent_;
-  std::vector<std::optional<wind::judging::SensorState>> states_sent_;
-  std::vector<std::optional<double>> opacities_sent_;
+  std::vector<OscAddress> addresses_;
+  std::vector<Message> sent_;  ///< of each address that is sent when it changes, the last message
   std::vector<Message> messages_;
 };
 

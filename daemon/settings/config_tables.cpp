@@ -103,6 +103,13 @@ std::span<const ConfigTable> config_tables() {
                   .change = kAtOnce,
                   .fill = [](Config& config,
                              const ParameterValues& values) { return feeds::fill_mqtt(config.feeds.mqtt, values); }},
+      ConfigTable{
+          .name = "osc_query",
+          .summary = "lets programs find out which OSC addresses there are, and listen to them",
+          .parameters = feeds::osc_query_fields().parameters(),
+          .change = kAtOnce,
+          .fill = [](Config& config,
+                     const ParameterValues& values) { return feeds::fill_osc_query(config.feeds.osc_query, values); }},
       ConfigTable{.name = "log",
                   .summary = "what the daemon writes to standard error",
                   .parameters = log_fields().parameters(),

@@ -9,32 +9,32 @@ namespace {
 
 constexpr const char* kMaxPreflightAge_s = "600";
 
-bool is_of_api(const HttpRequest& request) {
+bool is_of_api(const http::Request& request) {
   return request.path.starts_with("/api/");
 }
 
-bool is_listed(const HttpRequest& request, std::span<const std::string> origins) {
+bool is_listed(const http::Request& request, std::span<const std::string> origins) {
   return std::ranges::find(origins, request.origin) != origins.end();
 }
 
 }  // namespace
 
-bool may_read(const HttpRequest& request, std::span<const std::string> origins) {
+bool may_read(const http::Request& request, std::span<const std::string> origins) {
   return is_same_origin(request.origin, request.host) || is_listed(request, origins);
 }
 
-std::optional<HttpResponse> preflight_answer(const HttpRequest& request, std::span<const std::string> origins) {
+std::optional<http::Response> preflight_answer(const http::Request& request, std::span<const std::string> origins) {
   if (request.method != "OPTIONS" || request.method_to_come != "GET") return std::nullopt;
   if (!is_of_api(request) || !is_listed(request, origins)) return std::nullopt;
-  return HttpResponse{.status = 204,
-                      .fields = {{"Access-Control-Allow-Origin", request.origin},
-                                 {"Access-Control-Allow-Methods", "GET"},
-                                 {"Access-Control-Allow-Headers", "Authorization"},
-                                 {"Access-Control-Max-Age", kMaxPreflightAge_s},
-                                 {"Vary", "Origin"}}};
+  return http::Response{.status = 204,
+                        .fields = {{"Access-Control-Allow-Origin", request.origin},
+                                   {"Access-Control-Allow-Methods", "GET"},
+                                   {"Access-Control-Allow-Headers", "Authorization"},
+                                   {"Access-Control-Max-Age", kMaxPreflightAge_s},
+                                   {"Vary", "Origin"}}};
 }
 
-void share_answer(HttpResponse& response, const HttpRequest& request, std::span<const std::string> origins) {
+void share_answer(http::Response& response, const http::Request& request, std::span<const std::string> origins) {
   const bool only_reads = request.method == "GET" || request.method == "HEAD";
   if (origins.empty() || !only_reads || !is_of_api(request)) return;
   response.fields.emplace_back("Vary", "Origin");

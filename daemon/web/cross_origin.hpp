@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "daemon/web/http_server.hpp"
+#include "daemon/http/server.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -12,12 +12,12 @@ namespace yuragi::daemon::web {
 
 /// Returns true if a page of the request's origin may read: one of this daemon's own, one of `origins`, or no page at
 /// all. Pure.
-bool may_read(const HttpRequest& request, std::span<const std::string> origins);
+bool may_read(const http::Request& request, std::span<const std::string> origins);
 
 /// Returns the answer to the preflight of a page in `origins` that wants to read the API; nullopt: it is none. Pure.
-std::optional<HttpResponse> preflight_answer(const HttpRequest& request, std::span<const std::string> origins);
+std::optional<http::Response> preflight_answer(const http::Request& request, std::span<const std::string> origins);
 
 /// Lets a page of `origins` read the answer if it is one of the API to a GET. Pure.
-void share_answer(HttpResponse& response, const HttpRequest& request, std::span<const std::string> origins);
+void share_answer(http::Response& response, const http::Request& request, std::span<const std::string> origins);
 
 }  // namespace yuragi::daemon::web

@@ -38,7 +38,7 @@ Guide::Guide(const std::filesystem::path& folder) {
   }
 }
 
-std::optional<HttpResponse> Guide::answer(const HttpRequest& request) const {
+std::optional<http::Response> Guide::answer(const http::Request& request) const {
   const bool only_reads = request.method == "GET" || request.method == "HEAD";
   if (!only_reads || !request.path.starts_with(kGuidePath)) return std::nullopt;
   std::string name = request.path.substr(kGuidePath.size());
@@ -49,7 +49,7 @@ std::optional<HttpResponse> Guide::answer(const HttpRequest& request) const {
                    files_.empty() ? "the guide is not installed beside this program; read config/guide in the sources"
                                   : "the guide has no page " + name + "; " + std::string(kGuidePath) + " lists all");
   }
-  HttpResponse response = page_response(*content_type_of(file->first));
+  http::Response response = page_response(*content_type_of(file->first));
   response.body = file->second;
   return response;
 }

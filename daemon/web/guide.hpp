@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "daemon/web/http_server.hpp"
+#include "daemon/http/server.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -21,7 +21,7 @@ class Guide {
   explicit Guide(const std::filesystem::path& folder);
 
   /// Returns the page for a GET or HEAD of /guide/, or 404 with the reason; nullopt for all other paths. Pure.
-  std::optional<HttpResponse> answer(const HttpRequest& request) const;
+  std::optional<http::Response> answer(const http::Request& request) const;
 
  private:
   std::map<std::string, std::string> files_;  // by their names

@@ -5,7 +5,7 @@
 
 namespace yuragi::daemon::web {
 
-HttpResponse page_response(std::string_view content_type) {
+http::Response page_response(std::string_view content_type) {
   return {.content_type = std::string(content_type),
           .fields = {{"Cache-Control", "no-cache"},
                      {"Content-Security-Policy",
@@ -13,12 +13,12 @@ HttpResponse page_response(std::string_view content_type) {
                       "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"}}};
 }
 
-std::optional<HttpResponse> page_answer(const HttpRequest& request) {
+std::optional<http::Response> page_answer(const http::Request& request) {
   if (request.method != "GET" && request.method != "HEAD") return std::nullopt;
   const std::span<const PageFile> files = page_files();
   const auto file = std::ranges::find(files, std::string_view(request.path), &PageFile::path);
   if (file == files.end()) return std::nullopt;
-  HttpResponse response = page_response(file->content_type);
+  http::Response response = page_response(file->content_type);
   response.fields.emplace_back("ETag", file->entity_tag);
   if (request.if_none_match == file->entity_tag)
     response.status = 304;

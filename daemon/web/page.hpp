@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "daemon/web/http_server.hpp"
+#include "daemon/http/server.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -21,10 +21,10 @@ std::span<const PageFile> page_files();
 /// Returns the answer for a file of the daemon's own pages, still without its text. A browser keeps it but asks for it
 /// again each time, and may load for it only the daemon's own files and answers, and no script or style within a page's
 /// text (W3C, Content Security Policy Level 3).
-HttpResponse page_response(std::string_view content_type);
+http::Response page_response(std::string_view content_type);
 
 /// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nullopt: it asks for
 /// something else. The files are the same for everybody and hold no secret. Pure.
-std::optional<HttpResponse> page_answer(const HttpRequest& request);
+std::optional<http::Response> page_answer(const http::Request& request);
 
 }  // namespace yuragi::daemon::web

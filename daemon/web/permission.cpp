@@ -32,14 +32,14 @@ std::string_view cookie_named(std::string_view name, std::string_view cookies) {
 
 }  // namespace
 
-std::optional<std::string> session_shown(const HttpRequest& request, const Trust& trust, double utc_s) {
+std::optional<std::string> session_shown(const http::Request& request, const Trust& trust, double utc_s) {
   if (!trust.takes_token || trust.access == nullptr || trust.pairings == nullptr) return std::nullopt;
   auto id = trust.access->session_id_of(cookie_named(kSessionCookie, request.cookie));
   if (id && !trust.pairings->is_valid(*id, utc_s)) id.reset();
   return id;
 }
 
-bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s) {
+bool is_trusted(const http::Request& request, const Trust& trust, double utc_s) {
   if (!trust.takes_token) return request.client.is_local && !request.is_forwarded;
   const Access* const access = trust.access;
   if (access == nullptr) return false;
@@ -49,12 +49,12 @@ bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s) {
   return session_shown(request, trust, utc_s).has_value();
 }
 
-bool shows_credentials(const HttpRequest& request) {
+bool shows_credentials(const http::Request& request) {
   return !request.authorization.empty() || !cookie_named(kSessionCookie, request.cookie).empty();
 }
 
-std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool is_trusted, const Trust& trust,
-                                               bool reading_takes_token) {
+std::optional<http::Response> permission_refusal(const http::Request& request, bool is_trusted, const Trust& trust,
+                                                 bool reading_takes_token) {
   const bool only_reads = request.method == "GET" || request.method == "HEAD";
   if (is_trusted || (only_reads && !reading_takes_token)) return std::nullopt;
   const char* const why =
@@ -63,18 +63,19 @@ std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool 
           ? "the token of this installation cannot be read, so nobody may do this: the daemon's log has the reason"
           : "this needs the token (Authorization: Bearer TOKEN) or a paired browser: `yuragi token` shows a "
             "code";
-  HttpResponse refusal = problem(401, "Not allowed", why);
+  http::Response refusal = problem(401, "Not allowed", why);
   refusal.fields.push_back({"WWW-Authenticate", "Bearer realm=\"yuragi\""});
   return refusal;
 }
 
-HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const std::string& address,
-                            const Trust& trust, PairingLimits& limits, Pairings& pairings, double utc_s, double now_s) {
+http::Response pairing_answer(const std::string& code, const http::Request& request, const std::string& address,
+                              const Trust& trust, PairingLimits& limits, Pairings& pairings, double utc_s,
+                              double now_s) {
   if (!trust.takes_token) return problem(409, "Not done", "the configuration has no [http] token_file");
   if (trust.access == nullptr) return problem(409, "Not done", "the token of this installation cannot be read");
   const Access* const access = trust.access;
   if (!limits.take(address, now_s)) {
-    HttpResponse refusal = problem(429, "Too many tries", "wait some seconds, and try again");
+    http::Response refusal = problem(429, "Too many tries", "wait some seconds, and try again");
     refusal.fields.push_back({"Retry-After", "10"});
     return refusal;
   }
@@ -86,14 +87,14 @@ HttpResponse pairing_answer(const std::string& code, const HttpRequest& request,
     return problem(403, "Used", "this code has been used: `yuragi token` shows another one");
   const std::string id = Access::new_session_id();
   pairings.add(id, address, utc_s);
-  HttpResponse response{.body = json_text(nlohmann::json({{"message", "paired"}})) + "\n"};
+  http::Response response{.body = json_text(nlohmann::json({{"message", "paired"}})) + "\n"};
   response.fields.push_back(
       {"Set-Cookie", fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", kSessionCookie,
                                  access->session_of(id), Pairings::kSession_s, request.is_https ? "; Secure" : "")});
   return response;
 }
 
-std::string client_address(const HttpRequest& request, std::span<const std::string> proxies) {
+std::string client_address(const http::Request& request, std::span<const std::string> proxies) {
   const auto is_proxy = [proxies](std::string_view address) {
     return std::ranges::find(proxies, address) != proxies.end();
   };

@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::web {
 
-HttpResponse problem(unsigned status, std::string title, std::string detail) {
+http::Response problem(unsigned status, std::string title, std::string detail) {
   const nlohmann::ordered_json json = {
       {"type", "about:blank"}, {"title", std::move(title)}, {"status", status}, {"detail", std::move(detail)}};
   return {.status = status, .content_type = "application/problem+json", .body = json_text(json) + "\n"};

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-HttpResponse json_response(const ordered_json& content) {
+http::Response json_response(const ordered_json& content) {
   return {.body = json_text(content, 2) + "\n"};
 }
 
@@ -34,15 +34,15 @@ std::optional<std::string> silence_of(const Facts& facts) {
   return fmt::format("no news from the daemon for {:.0f} s: it hangs, or its machine is overloaded", facts.age_s);
 }
 
-HttpResponse no_news(const std::string& why) {
-  HttpResponse response = problem(503, "No news from the daemon", why);
+http::Response no_news(const std::string& why) {
+  http::Response response = problem(503, "No news from the daemon", why);
   response.fields.push_back({"Retry-After", "1"});
   return response;
 }
 
-Answer health(const HttpRequest& /*request*/, const Facts& facts) {
+Answer health(const http::Request& /*request*/, const Facts& facts) {
   const auto text = [](unsigned status, const std::string& body) {
-    return HttpResponse{.status = status, .content_type = "text/plain; charset=utf-8", .body = body};
+    return http::Response{.status = status, .content_type = "text/plain; charset=utf-8", .body = body};
   };
   if (const auto why = silence_of(facts)) return text(503, *why + "\n");
   std::string reasons;
@@ -50,11 +50,11 @@ Answer health(const HttpRequest& /*request*/, const Facts& facts) {
   return reasons.empty() ? text(200, "all is well\n") : text(503, reasons);
 }
 
-Answer metrics(const HttpRequest& /*request*/, const Facts& facts) {
+Answer metrics(const http::Request& /*request*/, const Facts& facts) {
   if (const auto why = silence_of(facts)) return no_news(*why);
-  return HttpResponse{.content_type = "text/plain; version=0.0.4; charset=utf-8",
-                      .body = metrics_text(*facts.sensors, facts.software, facts.counts,
-                                           facts.faults ? facts.faults() : FaultCounts{})};
+  return http::Response{.content_type = "text/plain; version=0.0.4; charset=utf-8",
+                        .body = metrics_text(*facts.sensors, facts.software, facts.counts,
+                                             facts.faults ? facts.faults() : FaultCounts{})};
 }
 
 ordered_json status_json(const Facts& facts) {
@@ -68,24 +68,24 @@ ordered_json status_json(const Facts& facts) {
   content.update(state::sensors_json(*facts.sensors));
   return content;
 }
-Answer status(const HttpRequest& /*request*/, const Facts& facts) {
+Answer status(const http::Request& /*request*/, const Facts& facts) {
   if (const auto why = silence_of(facts)) return no_news(*why);
   return json_response(status_json(facts));
 }
 
-Answer socket(const HttpRequest& request, const Facts& /*facts*/) {
+Answer socket(const http::Request& request, const Facts& /*facts*/) {
   if (request.is_websocket) return SocketOpening{};
-  HttpResponse refusal = problem(426, "A WebSocket", "/ws is for WebSockets: new WebSocket(\"ws://HOST:PORT/ws\")");
+  http::Response refusal = problem(426, "A WebSocket", "/ws is for WebSockets: new WebSocket(\"ws://HOST:PORT/ws\")");
   refusal.fields.push_back({"Upgrade", "websocket"});
   return refusal;
 }
 
-Answer openapi(const HttpRequest& /*request*/, const Facts& /*facts*/) {
-  return HttpResponse{.body = std::string(openapi_json())};
+Answer openapi(const http::Request& /*request*/, const Facts& /*facts*/) {
+  return http::Response{.body = std::string(openapi_json())};
 }
 
 /// A reply that refuses becomes a problem: of a request that names what is not there, or that is not allowed.
-HttpResponse answer_with(const wire::ControlReply& reply, const char* key, const ordered_json& list) {
+http::Response answer_with(const wire::ControlReply& reply, const char* key, const ordered_json& list) {
   if (!reply.done) return problem(409, "Not done", reply.message);
   return json_response({{"message", reply.message}, {key, list}});
 }
@@ -96,22 +96,22 @@ Question scenes_question(wire::Control control) {
           }};
 }
 
-Answer scenes(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+Answer scenes(const http::Request& /*request*/, const Facts& /*facts*/) {
   return scenes_question({});
 }
-Answer change_scene(const HttpRequest& request, const Facts& /*facts*/) {
+Answer change_scene(const http::Request& request, const Facts& /*facts*/) {
   const auto control = scene_control_of(request.body);
   if (!control) return problem(400, "Not understood", control.error().message);
   return scenes_question(*control);
 }
 /// A daemon that plays nothing refuses the question; its list is empty.
-Answer players(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+Answer players(const http::Request& /*request*/, const Facts& /*facts*/) {
   return Question{.control = {.scene = {}, .player = wire::PlayerCommand{}},
                   .answer = [](const wire::ControlReply& reply) {
                     return json_response({{"message", reply.message}, {"players", state::players_json(reply.players)}});
                   }};
 }
-Answer change_player(const HttpRequest& request, const Facts& /*facts*/) {
+Answer change_player(const http::Request& request, const Facts& /*facts*/) {
   const auto command = player_command_of(request.body);
   if (!command) return problem(400, "Not understood", command.error().message);
   return Question{.control = {.scene = {}, .player = *command}, .answer = [](const wire::ControlReply& reply) {
@@ -119,7 +119,7 @@ Answer change_player(const HttpRequest& request, const Facts& /*facts*/) {
                   }};
 }
 
-Answer parameters(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+Answer parameters(const http::Request& /*request*/, const Facts& /*facts*/) {
   return Question{.control = {.scene = {}, .parameters = wire::ParameterCommand{.describe = true}},
                   .answer = [](const wire::ControlReply& reply) {
                     return answer_with(
@@ -127,7 +127,7 @@ Answer parameters(const HttpRequest& /*request*/, const Facts& /*facts*/) {
                         reply.parameters ? state::parameters_json(reply.parameters->groups) : ordered_json::array());
                   }};
 }
-Answer change_parameters(const HttpRequest& request, const Facts& /*facts*/) {
+Answer change_parameters(const http::Request& request, const Facts& /*facts*/) {
   auto command = parameter_command_of(request.body);
   if (!command) return problem(400, "Not understood", command.error().message);
   return Question{.control = {.scene = {}, .parameters = std::move(*command)},
@@ -138,7 +138,7 @@ Answer change_parameters(const HttpRequest& request, const Facts& /*facts*/) {
                       },
                   .takes_long = true};
 }
-Answer reload(const HttpRequest& request, const Facts& /*facts*/) {
+Answer reload(const http::Request& request, const Facts& /*facts*/) {
   auto command = reload_command_of(request.body);
   if (!command) return problem(400, "Not understood", command.error().message);
   return Question{
@@ -153,13 +153,13 @@ Answer reload(const HttpRequest& request, const Facts& /*facts*/) {
       .takes_long = true};
 }
 
-Answer pair(const HttpRequest& request, const Facts& /*facts*/) {
+Answer pair(const http::Request& request, const Facts& /*facts*/) {
   auto pairing = pairing_of(request.body);
   if (!pairing) return problem(400, "Not understood", pairing.error().message);
   return std::move(*pairing);
 }
 
-Answer sessions(const HttpRequest& /*request*/, const Facts& facts) {
+Answer sessions(const http::Request& /*request*/, const Facts& facts) {
   ordered_json sessions = ordered_json::array();
   if (facts.pairings != nullptr) {
     for (const PairedBrowser& browser : facts.pairings->browsers(facts.utc_s)) {
@@ -171,13 +171,13 @@ Answer sessions(const HttpRequest& /*request*/, const Facts& facts) {
   }
   return json_response({{"sessions", std::move(sessions)}});
 }
-Answer revoke_session(const HttpRequest& request, const Facts& /*facts*/) {
+Answer revoke_session(const http::Request& request, const Facts& /*facts*/) {
   auto revocation = revocation_of(request.body);
   if (!revocation) return problem(400, "Not understood", revocation.error().message);
   return std::move(*revocation);
 }
 
-Answer recent_wind(const HttpRequest& /*request*/, const Facts& facts) {
+Answer recent_wind(const http::Request& /*request*/, const Facts& facts) {
   ordered_json age_s = ordered_json::array();
   ordered_json measured_m_s = ordered_json::array();
   ordered_json blended_m_s = ordered_json::array();
@@ -196,13 +196,13 @@ Answer recent_wind(const HttpRequest& /*request*/, const Facts& facts) {
                         {"noise_share", std::move(noise_share)}});
 }
 
-Answer history(const HttpRequest& request, const Facts& /*facts*/) {
+Answer history(const http::Request& request, const Facts& /*facts*/) {
   const auto hours = number_in_query(request.query, {.name = "hours", .least = 1, .most = 168, .otherwise = 24});
   if (!hours) return problem(400, "Not understood", hours.error().message);
   return HistoryQuestion{*hours};
 }
 
-Answer log(const HttpRequest& request, const Facts& facts) {
+Answer log(const http::Request& request, const Facts& facts) {
   const auto count = number_in_query(request.query, {.name = "lines", .least = 1, .most = 500, .otherwise = 200});
   if (!count) return problem(400, "Not understood", count.error().message);
   ordered_json lines = ordered_json::array();
@@ -234,7 +234,7 @@ constexpr std::array kRoutes = {
     Route{"POST", kSessionsPath, revoke_session},
 };
 
-std::string_view method_of(const HttpRequest& request) {
+std::string_view method_of(const http::Request& request) {
   return request.method == "HEAD" ? std::string_view("GET") : request.method;
 }
 
@@ -244,7 +244,7 @@ std::span<const Route> routes() {
   return kRoutes;
 }
 
-std::optional<HttpResponse> method_refusal(const HttpRequest& request) {
+std::optional<http::Response> method_refusal(const http::Request& request) {
   const std::string_view method = method_of(request);
   std::string allowed;
   for (const Route& route : kRoutes) {
@@ -256,7 +256,7 @@ std::optional<HttpResponse> method_refusal(const HttpRequest& request) {
     if (method == "GET") return std::nullopt;
     allowed = "GET";
   }
-  HttpResponse refusal = problem(405, "Method not allowed", request.path + " takes " + allowed);
+  http::Response refusal = problem(405, "Method not allowed", request.path + " takes " + allowed);
   refusal.fields.push_back({"Allow", allowed});
   return refusal;
 }
@@ -266,7 +266,7 @@ std::optional<std::string> status_message(const Facts& facts) {
   return json_text(ordered_json{{"status", status_json(facts)}});
 }
 
-Answer answer_to(const HttpRequest& request, const Facts& facts) {
+Answer answer_to(const http::Request& request, const Facts& facts) {
   if (auto refusal = method_refusal(request)) return std::move(*refusal);
   const auto route = std::ranges::find_if(
       kRoutes, [&](const Route& each) { return each.path == request.path && each.method == method_of(request); });

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <variant>
 
+#include "daemon/http/server.hpp"
 #include "daemon/web/fault_counts.hpp"
-#include "daemon/web/http_server.hpp"
 #include "daemon/web/log_line.hpp"
 #include "daemon/web/pairings.hpp"
 #include "daemon/web/request_body.hpp"
@@ -38,7 +38,7 @@ struct Facts {
 /// A request that the daemon has to carry out, and the answer that its reply becomes.
 struct Question {
   wire::Control control;
-  std::function<HttpResponse(const wire::ControlReply& reply)> answer;
+  std::function<http::Response(const wire::ControlReply& reply)> answer;
   bool takes_long = false;  ///< scenes are made for it, and fade
 };
 
@@ -50,7 +50,7 @@ struct HistoryQuestion {
 /// A request for a WebSocket, for who may read.
 struct SocketOpening {};
 
-using Answer = std::variant<HttpResponse, Question, Pairing, Revocation, HistoryQuestion, SocketOpening>;
+using Answer = std::variant<http::Response, Question, Pairing, Revocation, HistoryQuestion, SocketOpening>;
 
 /// What those may do, too, who are let in nowhere else yet.
 inline constexpr std::string_view kPairPath = "/api/v1/pair";
@@ -67,19 +67,19 @@ inline constexpr std::string_view kHealthPath = "/healthz";
 /// One thing that can be asked for.
 struct Route {
   std::string_view method, path;
-  Answer (*answer)(const HttpRequest& request, const Facts& facts);
+  Answer (*answer)(const http::Request& request, const Facts& facts);
 };
 
 /// All of them; openapi.json, which is served at /api/v1/openapi.json, describes each.
 std::span<const Route> routes();
 
 /// Returns the refusal (405) of a method that a path does not take, or nullopt. HEAD counts as GET. Pure.
-std::optional<HttpResponse> method_refusal(const HttpRequest& request);
+std::optional<http::Response> method_refusal(const http::Request& request);
 
 /// The state of /api/v1/status as the message of a WebSocket: {"status": {...}}; nullopt: nothing is known. Pure.
 std::optional<std::string> status_message(const Facts& facts);
 
 /// Answers a request that is_known_host() and, if it changes something, is_same_origin() has let through. Pure.
-Answer answer_to(const HttpRequest& request, const Facts& facts);
+Answer answer_to(const http::Request& request, const Facts& facts);
 
 }  // namespace yuragi::daemon::web

@@ -104,7 +104,7 @@ bool is_within(const fs::path& file, const fs::path& folder) {
   return std::ranges::mismatch(folder, file).in1 == folder.end();
 }
 
-HttpResponse not_found(const HttpRequest& request) {
+http::Response not_found(const http::Request& request) {
   return problem(404, "Not found", request.path + " is no file of [http] folder");
 }
 
@@ -118,9 +118,9 @@ bool is_of_site(std::string_view path) {
   return path.starts_with(kSitePath) || path == kSitePath.substr(0, kSitePath.size() - 1);
 }
 
-HttpResponse site_response(const fs::path& folder, const HttpRequest& request) {
+http::Response site_response(const fs::path& folder, const http::Request& request) {
   const auto redirection = [&request] {
-    return HttpResponse{.status = 301, .fields = {{"Location", request.path + "/"}}};
+    return http::Response{.status = 301, .fields = {{"Location", request.path + "/"}}};
   };
   if (request.path.size() < kSitePath.size()) return redirection();
   const auto name = decoded(std::string_view(request.path).substr(kSitePath.size()));
@@ -139,8 +139,8 @@ HttpResponse site_response(const fs::path& folder, const HttpRequest& request) {
   const std::uintmax_t size = fs::file_size(file, error);
   const std::string entity_tag = error ? std::string() : entity_tag_of(file, size, error);
   if (error) return not_found(request);
-  HttpResponse response{.content_type = content_type_of(file),
-                        .fields = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}}};
+  http::Response response{.content_type = content_type_of(file),
+                          .fields = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}}};
   response.fields.emplace_back("ETag", entity_tag);
   if (request.if_none_match == entity_tag) {
     response.status = 304;
@@ -155,8 +155,8 @@ HttpResponse site_response(const fs::path& folder, const HttpRequest& request) {
 /// With the thread, which ends by itself if a disk hangs when the daemon ends.
 struct Site::Shared {
   struct Waiting {
-    HttpRequest request;
-    std::function<void(HttpResponse)> reply;
+    http::Request request;
+    std::function<void(http::Response)> reply;
   };
 
   fs::path folder;
@@ -197,7 +197,7 @@ Site::~Site() {
   shared_->changed.notify_all();
 }
 
-void Site::answer(const HttpRequest& request, std::function<void(HttpResponse)> reply) {
+void Site::answer(const http::Request& request, std::function<void(http::Response)> reply) {
   if (!shared_) return reply(problem(404, "Not served", "set [http] folder to the folder with your pages"));
   {
     const std::lock_guard lock(shared_->mutex);

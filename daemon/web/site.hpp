@@ -6,7 +6,7 @@
 #include <memory>
 #include <string_view>
 
-#include "daemon/web/http_server.hpp"
+#include "daemon/http/server.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxSiteFile_bytes = 8UL << 20;
 /// Reads the file of `folder` that a GET or HEAD of /site/... asks for. Names that begin with a dot, "..", links that
 /// leave the folder, what is no regular file, and files that are too large are refused. A folder is answered with its
 /// index.html. Scripts, styles and data may come from this daemon only (Content-Security-Policy). Waits for the disk.
-HttpResponse site_response(const std::filesystem::path& folder, const HttpRequest& request);
+http::Response site_response(const std::filesystem::path& folder, const http::Request& request);
 
 /// The folder of own pages: each request is answered from the disk, on a thread of its own, so that a disk that hangs
 /// delays no other answer. Thread-safe: no.
@@ -38,7 +38,7 @@ class Site {
   Site& operator=(const Site&) = delete;
 
   /// Calls `reply` once, at once or on the thread; never after a disk that hangs for ever.
-  void answer(const HttpRequest& request, std::function<void(HttpResponse)> reply);
+  void answer(const http::Request& request, std::function<void(http::Response)> reply);
 
  private:
   struct Shared;

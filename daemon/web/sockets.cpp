@@ -15,11 +15,11 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
+#include "daemon/http/upgrade.hpp"
 #include "daemon/stream/client_log.hpp"
 #include "daemon/stream/client_queue.hpp"
 #include "daemon/stream/frame_pace.hpp"
 #include "daemon/stream/pose_views.hpp"
-#include "daemon/web/http_upgrade.hpp"
 #include "daemon/web/request_body.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/printable_text.hpp"
@@ -68,7 +68,7 @@ struct Counted {
 
 class Client : public std::enable_shared_from_this<Client> {
  public:
-  Client(HttpUpgrade& upgrade, Sockets::Visitor visitor, std::shared_ptr<Feed> feed)
+  Client(http::Upgrade& upgrade, Sockets::Visitor visitor, std::shared_ptr<Feed> feed)
       : stream_(std::move(upgrade.socket)),
         request_(std::move(upgrade.request)),
         peer_(std::move(upgrade.client)),
@@ -358,7 +358,7 @@ class Sockets::Server : public std::enable_shared_from_this<Server> {
     return stream::admission_refusal(feed_->settings.limits.places, present, client);
   }
 
-  void open(HttpUpgrade& upgrade, Visitor visitor) {
+  void open(http::Upgrade& upgrade, Visitor visitor) {
     std::erase_if(clients_, [](const auto& client) { return client->has_ended(); });
     clients_.push_back(std::make_shared<Client>(upgrade, std::move(visitor), feed_));
     ++feed_->clients;
@@ -408,7 +408,7 @@ Sockets::~Sockets() {
 std::optional<std::string> Sockets::refusal(const stream::Peer& client) const {
   return server_->refusal(client);
 }
-void Sockets::open(HttpUpgrade& upgrade, Visitor visitor) {
+void Sockets::open(http::Upgrade& upgrade, Visitor visitor) {
   server_->open(upgrade, std::move(visitor));
 }
 bool Sockets::wants_wind() const noexcept {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/http/server.hpp"
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
 #include "daemon/values/moment.hpp"
@@ -17,8 +18,6 @@ class io_context;
 }
 
 namespace yuragi::daemon::web {
-
-struct HttpUpgrade;
 
 struct SocketLimits {
   stream::AdmissionLimits places = {.max_clients = 64, .max_clients_per_address = 8};
@@ -62,7 +61,7 @@ class Sockets {
   /// Returns why there is no place for a client; nullopt: there is one.
   std::optional<std::string> refusal(const stream::Peer& client) const;
   /// Answers the request and serves the client from then on.
-  void open(HttpUpgrade& upgrade, Visitor visitor);
+  void open(http::Upgrade& upgrade, Visitor visitor);
 
   bool wants_wind() const noexcept;
   bool wants_frames() const noexcept;

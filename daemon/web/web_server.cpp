@@ -12,10 +12,10 @@
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
 
+#include "daemon/http/server.hpp"
 #include "daemon/stream/client_log.hpp"
 #include "daemon/web/cross_origin.hpp"
 #include "daemon/web/guide.hpp"
-#include "daemon/web/http_server.hpp"
 #include "daemon/web/page.hpp"
 #include "daemon/web/pairings_file.hpp"
 #include "daemon/web/permission.hpp"
@@ -63,30 +63,30 @@ double mono_s() {
 /// A question that the daemon is carrying out: answered by its reply, or, if that does not come, when it is given
 /// up.
 struct Pending {
-  Pending(asio::io_context& io, HttpReply to_client) : given_up(io), reply(std::move(to_client)) {}
+  Pending(asio::io_context& io, http::Reply to_client) : given_up(io), reply(std::move(to_client)) {}
 
-  void answer(HttpResponse response) {
+  void answer(http::Response response) {
     given_up.cancel();
     if (reply) std::exchange(reply, nullptr)(std::move(response));
   }
 
   asio::steady_timer given_up;
-  HttpReply reply;
+  http::Reply reply;
 };
 
-HttpResponse nothing_recorded() {
+http::Response nothing_recorded() {
   return problem(404, "Nothing is recorded",
                  "the daemon records nothing: name a file in [recording] file, or start it with --record FILE.windlog");
 }
 
-HttpResponse ask_again(const std::string& why) {
-  HttpResponse response = problem(503, "Not yet", why);
+http::Response ask_again(const std::string& why) {
+  http::Response response = problem(503, "Not yet", why);
   response.fields.push_back({"Retry-After", "5"});
   return response;
 }
 
 /// `is_trusted`: a failure may name the recording.
-HttpResponse history_answer(const Result<std::string, Failure>& read, bool is_trusted) {
+http::Response history_answer(const Result<std::string, Failure>& read, bool is_trusted) {
   if (read) return {.body = *read};
   const Failure& failure = read.error();
   if (failure.kind == FailureKind::kUnavailable) return ask_again(failure.message);
@@ -96,7 +96,7 @@ HttpResponse history_answer(const Result<std::string, Failure>& read, bool is_tr
 }
 
 /// Of a session that has ended.
-HttpResponse revocation_answer(const Result<void, Failure>& saved) {
+http::Response revocation_answer(const Result<void, Failure>& saved) {
   if (saved) return {.body = "{\"message\": \"revoked\"}\n"};
   return problem(500, "Not saved",
                  "the session has ended, but it is valid again after a restart: " + saved.error().message +
@@ -115,9 +115,9 @@ class Server::Thread {
         sockets_(*io_, {.limits = settings_.sockets,
                         .tick_rate_hz = settings_.tick_rate_hz,
                         .is_token = [this](const std::string& token) { return access_ && access_->is_token(token); }}),
-        server_(std::make_unique<HttpServer>(
-            *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
-            [this](const HttpRequest& request, const HttpReply& reply) { answer(request, reply); })),
+        server_(std::make_unique<http::Server>(
+            *io_, settings_.listen, http::Limits{.clients = settings_.clients},
+            [this](const http::Request& request, const http::Reply& reply) { answer(request, reply); })),
         endpoint_(server_->local_endpoint()) {
     if (!settings_.token.is_empty()) trust(settings_.token);
     thread_ = std::thread([this] { run(); });
@@ -209,14 +209,14 @@ class Server::Thread {
     pairings_ = pairings_file_.read(access_->mark());
   }
 
-  void answer(const HttpRequest& request, const HttpReply& reply) {
-    answer_here(request, [this, request, reply](HttpResponse response) {
+  void answer(const http::Request& request, const http::Reply& reply) {
+    answer_here(request, [this, request, reply](http::Response response) {
       share_answer(response, request, settings_.origins);
       reply(std::move(response));
     });
   }
 
-  void answer_here(const HttpRequest& request, HttpReply reply) {
+  void answer_here(const http::Request& request, http::Reply reply) {
     if (!is_known_host(request.host, settings_.hosts)) {
       return reply(problem(421, "Not this machine's name",
                            "\"" + request.host +
@@ -259,7 +259,7 @@ class Server::Thread {
 
     if (only_reads && is_of_site(request.path)) return read_site(request, std::move(reply));
     Answer answer = answer_to(request, facts_for(trusted, utc_s));
-    if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
+    if (auto* const response = std::get_if<http::Response>(&answer)) return reply(std::move(*response));
     if (std::holds_alternative<SocketOpening>(answer)) {
       return open_socket(
           request, {.is_trusted = trusted, .session = session_shown(request, trust, utc_s), .address = address}, reply);
@@ -272,7 +272,7 @@ class Server::Thread {
     if (const auto* const question = std::get_if<HistoryQuestion>(&answer))
       return read_history(question->hours, trusted, std::move(reply));
     if (!only_reads) {
-      reply = [this, address, path = request.path, to_client = std::move(reply)](HttpResponse response) {
+      reply = [this, address, path = request.path, to_client = std::move(reply)](http::Response response) {
         if (response.status < 300) ++counts_.changes;
         log_.info("http: {} changes {}: {}", address, path, response.status < 300 ? "done" : "refused");
         to_client(std::move(response));
@@ -305,25 +305,28 @@ class Server::Thread {
     return text ? std::make_shared<const std::string>(std::move(*text)) : nullptr;
   }
 
-  void open_socket(const HttpRequest& request, Sockets::Visitor visitor, const HttpReply& reply) {
+  void open_socket(const http::Request& request, Sockets::Visitor visitor, const http::Reply& reply) {
     // A browser lets any page open a WebSocket, and sends it this machine's cookies.
     if (!may_read(request, settings_.origins)) {
       return reply(problem(403, "Another page's request",
                            "only pages of this daemon and those of [http] origins may open a WebSocket"));
     }
     if (const auto why = sockets_.refusal(request.client)) {
-      HttpResponse refusal = problem(503, "No place", *why);
+      http::Response refusal = problem(503, "No place", *why);
       refusal.fields.push_back({"Retry-After", "10"});
       return reply(std::move(refusal));
     }
-    HttpResponse opening{.status = 101};
-    opening.take_over = [this, visitor = std::move(visitor)](HttpUpgrade& upgrade) { sockets_.open(upgrade, visitor); };
+    http::Response opening{.status = 101};
+    opening.take_over = [this, visitor = std::move(visitor)](http::Upgrade& upgrade) {
+      sockets_.open(upgrade, visitor);
+    };
     reply(std::move(opening));
   }
 
-  HttpResponse pair(const std::string& code, const HttpRequest& request, const std::string& address, const Trust& trust,
-                    double utc_s) {
-    HttpResponse response = pairing_answer(code, request, address, trust, pairing_limits_, pairings_, utc_s, mono_s());
+  http::Response pair(const std::string& code, const http::Request& request, const std::string& address,
+                      const Trust& trust, double utc_s) {
+    http::Response response =
+        pairing_answer(code, request, address, trust, pairing_limits_, pairings_, utc_s, mono_s());
     const bool is_paired = response.status == 200;
     ++(is_paired ? counts_.pairings : counts_.failed_pairings);
     if (is_paired) {
@@ -335,7 +338,7 @@ class Server::Thread {
     return response;
   }
 
-  void revoke(const std::string& id, const std::string& address, HttpReply reply) {
+  void revoke(const std::string& id, const std::string& address, http::Reply reply) {
     if (!pairings_.revoke(id))
       return reply(problem(404, "Not known", "there is no session with this id: `yuragi token --sessions` lists all"));
     ++counts_.changes;
@@ -356,7 +359,7 @@ class Server::Thread {
                         });
   }
 
-  void ask(Question question, bool is_local, HttpReply reply) {
+  void ask(Question question, bool is_local, http::Reply reply) {
     if (!settings_.ask) return reply(problem(503, "Not here", "this daemon accepts no requests"));
     const auto pending = wait_for_reply(
         std::move(reply), problem(503, "No reply", "the daemon does not reply: it hangs, or its machine is overloaded"),
@@ -373,7 +376,7 @@ class Server::Thread {
                   });
   }
 
-  void read_history(unsigned hours, bool is_trusted, HttpReply reply) {
+  void read_history(unsigned hours, bool is_trusted, http::Reply reply) {
     if (!settings_.history) return reply(nothing_recorded());
     const auto pending =
         wait_for_reply(std::move(reply), ask_again("the recording is still being read; ask again in some seconds"));
@@ -387,9 +390,9 @@ class Server::Thread {
     });
   }
 
-  void read_site(const HttpRequest& request, HttpReply reply) {
+  void read_site(const http::Request& request, http::Reply reply) {
     const auto pending = wait_for_reply(std::move(reply), ask_again("the disk of [http] folder does not respond"));
-    site_.answer(request, [io = std::weak_ptr(io_), asked = std::weak_ptr(pending)](HttpResponse response) {
+    site_.answer(request, [io = std::weak_ptr(io_), asked = std::weak_ptr(pending)](http::Response response) {
       const auto alive = io.lock();
       if (!alive) return;
       asio::post(*alive, [asked, response = std::move(response)]() mutable {
@@ -399,10 +402,10 @@ class Server::Thread {
   }
 
   /// What is waited for, with the answer if it does not come in time.
-  std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise) {
+  std::shared_ptr<Pending> wait_for_reply(http::Reply reply, http::Response otherwise) {
     return wait_for_reply(std::move(reply), std::move(otherwise), settings_.patience);
   }
-  std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise, Nanoseconds patience) {
+  std::shared_ptr<Pending> wait_for_reply(http::Reply reply, http::Response otherwise, Nanoseconds patience) {
     const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
     pending->given_up.expires_after(patience);
     pending->given_up.async_wait([pending, otherwise = std::move(otherwise)](const boost::system::error_code& error) {
@@ -428,7 +431,7 @@ class Server::Thread {
   bool is_taken_ = true;  ///< of newest_mutex_; false: the thread will take it
   Site site_;
   Sockets sockets_;
-  std::unique_ptr<HttpServer> server_;
+  std::unique_ptr<http::Server> server_;
   const std::string endpoint_;
   std::atomic<std::size_t> clients_ = 0;
   std::thread thread_;  // the last: it uses all of the above

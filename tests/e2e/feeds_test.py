@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The wind for other programs: a daemon with [[osc]], beside oscdump of liblo, another daemon, and a receiver that goes away.
+"""The wind for other programs: a daemon with [[osc]] and [osc_query], beside oscdump of liblo, another daemon,
+an OSCQuery client of npm, and a receiver that goes away.
 
 usage: feeds_test.py FOLDER_OF_PROGRAMS
 """
@@ -8,6 +9,7 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import signal
 import socket
 import struct
@@ -193,6 +195,42 @@ class FeedsTest(unittest.TestCase):
             if was_live and is_told and live < 0.5:
                 break
         self.assertGreater(len(set(speeds_after)), 30, "it moves")
+        self.assertEqual(daemon.end(), 0)
+
+    def test_an_oscquery_client_finds_every_address_and_listens(self):
+        tools = pathlib.Path(__file__).resolve().parents[2] / "build" / "browser"
+        if not (tools / "node_modules" / "oscquery").is_dir() or not shutil.which("node"):
+            self.skipTest("npm's oscquery is not there; config/setup.sh --test installs it")
+        receiver, port = self.receiver(), free_port()
+        daemon = self.start_daemon(SENSOR + GRASS + PLACE + f'[[osc]]\nto = "127.0.0.1:{receiver.port}"\n'
+                                   f'[osc_query]\nlisten = "127.0.0.1:{port}"\nname = "hall"\n')
+        self.wait_for_status(daemon, lambda status: any(feed["kind"] == "osc_query" and not feed["trouble"]
+                                                        for feed in status["feeds"]))
+        client = subprocess.Popen(["node", str(pathlib.Path(__file__).with_name("osc_query_client.mjs")), str(tools), str(port),
+                                   "120", "/wind/speed"], stdout=subprocess.PIPE)
+        sent = {}
+        for address, arguments in receiver.messages():
+            sent.setdefault(address, []).append(arguments)
+            if client.poll() is not None:
+                break
+        found = json.loads(client.communicate(timeout=HANG_S)[0])
+        self.assertEqual(client.returncode, 0)
+        self.assertEqual(found["host"]["name"], "hall")
+        methods = {method["path"]: method for method in found["methods"]}
+        self.assertEqual(set(sent) - set(methods), set(), "what [[osc]] sends is found")
+        for path, method in methods.items():
+            self.assertTrue(method["description"], path)
+            self.assertEqual(method["access"], 1, path)
+            for argument in method["arguments"]:
+                self.assertTrue("vals" in argument["range"] or argument["range"]["min"] < argument["range"]["max"], path)
+        # As often as by UDP: the values of one span of time, few of them left out.
+        heard = [message for data in found["messages"] for message in messages_of(bytes.fromhex(data))]
+        self.assertEqual({address for address, _ in heard}, {"/wind/speed"})
+        speeds = [arguments for _, arguments in heard]
+        by_udp = sent["/wind/speed"]
+        span = by_udp[by_udp.index(speeds[0]):by_udp.index(speeds[-1]) + 1]
+        self.assertGreaterEqual(len(speeds), len(span) / 2)
+        self.assertEqual([speed for speed in span if speed in set(speeds)], speeds, "in their order")
         self.assertEqual(daemon.end(), 0)
 
     def test_a_receiver_that_is_gone_is_one_line_of_the_log(self):

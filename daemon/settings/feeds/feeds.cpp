@@ -5,7 +5,9 @@
 namespace yuragi::daemon::settings::feeds {
 
 bool Config::wants_real_places() const {
-  return !places.empty() && std::ranges::any_of(osc, [](const Osc& feed) { return feed.wind == values::Wind::kReal; });
+  const bool is_queried = !osc_query.listen.empty() && osc_query.wind == values::Wind::kReal;
+  const auto sends_real = [](const Osc& feed) { return feed.wind == values::Wind::kReal; };
+  return !places.empty() && (is_queried || std::ranges::any_of(osc, sends_real));
 }
 
 std::vector<values::Grid> Config::grids() const {

@@ -7,18 +7,20 @@
 #include "daemon/settings/feeds/mqtt.hpp"
 #include "daemon/settings/feeds/nmea.hpp"
 #include "daemon/settings/feeds/osc.hpp"
+#include "daemon/settings/feeds/osc_query.hpp"
 #include "daemon/values/grid.hpp"
 #include "daemon/values/moment.hpp"
 #include "daemon/values/moment_maker.hpp"
 
 namespace yuragi::daemon::settings::feeds {
 
-/// What is sent to other programs: the typed form of the lists of list_tables(), and of [mqtt].
+/// What is sent to other programs: the typed form of the lists of list_tables(), and of [mqtt] and [osc_query].
 struct Config {
   std::vector<values::Place> places = {};
   std::vector<Osc> osc = {};
   std::vector<Dmx> dmx = {};
-  Mqtt mqtt = {};  ///< of its own table
+  Mqtt mqtt = {};
+  OscQuery osc_query = {};
   std::vector<Nmea> nmea = {};
 
   friend bool operator==(const Config&, const Config&) = default;

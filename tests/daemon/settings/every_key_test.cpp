@@ -130,6 +130,7 @@ const std::map<std::string, std::string>& lines_of_choosy_keys() {
       {"alert.sensor", "sensor = 'synthetic'"},
       {"alert.webhook", "webhook = 'http://nobody reads this'"},
       {"osc.to", "to = '127.0.0.1:9001'"},
+      {"osc_query.listen", "listen = '127.0.0.1:1'"},
       {"osc.send", "send = 'wind'"},
       {"osc.prefix", "prefix = '/a'"},
       {"osc.map.value", "value = 'norm'"},

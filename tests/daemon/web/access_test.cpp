@@ -95,12 +95,12 @@ TEST(PairingLimits, AnyNumberOfAddressesTakesBoundedMemory) {
   EXPECT_TRUE(limits.take("10.0.0.1", 1020.0)) << "later";
 }
 
-HttpRequest from_elsewhere() {
+http::Request from_elsewhere() {
   return {.method = "POST", .path = "/api/v1/scenes", .client = {.address = "192.168.1.30", .is_local = false}};
 }
 
 TEST(Permission, WithoutATokenFileThisMachineIsTrustedUnlessAProxySendsItForAnother) {
-  HttpRequest request{.client = {.address = "127.0.0.1", .is_local = true}};
+  http::Request request{.client = {.address = "127.0.0.1", .is_local = true}};
   EXPECT_TRUE(is_trusted(request, {}, kNow_s));
   request.is_forwarded = true;
   EXPECT_FALSE(is_trusted(request, {}, kNow_s));
@@ -110,7 +110,7 @@ TEST(Permission, WithATokenFileRightsComeFromTheTokenAloneWhateverTheAddress) {
   const Access access(kToken);
   const Trust trust{.takes_token = true, .access = &access};
   for (const bool is_local : {true, false}) {
-    HttpRequest request{.client = {.address = "127.0.0.1", .is_local = is_local}};
+    http::Request request{.client = {.address = "127.0.0.1", .is_local = is_local}};
     EXPECT_FALSE(is_trusted(request, trust, kNow_s)) << "a plain proxy_pass looks like this machine";
     request.authorization = "Bearer " + kToken.reveal();
     EXPECT_TRUE(is_trusted(request, trust, kNow_s));
@@ -121,7 +121,7 @@ TEST(Permission, OthersShowTheTokenOrASession) {
   const Access access(kToken);
   Pairings pairings;
   const Trust trust{.takes_token = true, .access = &access, .pairings = &pairings};
-  HttpRequest request = from_elsewhere();
+  http::Request request = from_elsewhere();
   EXPECT_FALSE(is_trusted(request, trust, kNow_s));
   request.authorization = "Bearer " + kToken.reveal();
   EXPECT_TRUE(is_trusted(request, trust, kNow_s));
@@ -145,7 +145,7 @@ TEST(Permission, OthersShowTheTokenOrASession) {
 TEST(Permission, ReadingIsFreeUnlessItTakesTheToken) {
   const Access access(kToken);
   const Trust trust{.takes_token = true, .access = &access};
-  HttpRequest request = from_elsewhere();
+  http::Request request = from_elsewhere();
   EXPECT_EQ(permission_refusal(request, false, trust, false)->status, 401U);
   EXPECT_THAT(permission_refusal(request, false, trust, false)->body, HasSubstr("yuragi token"));
   EXPECT_THAT(permission_refusal(request, false, {}, false)->body, HasSubstr("no [http] token_file"));
@@ -162,7 +162,7 @@ TEST(Permission, APairedBrowserIsLetInByItsCookieAlone) {
   Pairings pairings;
   const Trust trust{.takes_token = true, .access = &access, .pairings = &pairings};
   PairingLimits limits;
-  HttpRequest request = from_elsewhere();
+  http::Request request = from_elsewhere();
   const auto answer_to_code = [&](const std::string& code, const Trust& by = {}) {
     return pairing_answer(code, request, request.client.address, by, limits, pairings, kNow_s, 0.0);
   };
@@ -170,7 +170,7 @@ TEST(Permission, APairedBrowserIsLetInByItsCookieAlone) {
   EXPECT_EQ(answer_to_code("0000-0000").status, 409U);
   EXPECT_EQ(answer_to_code("0000-0000", {.takes_token = true}).status, 409U);
   request.is_https = true;
-  const HttpResponse paired = answer_to_code(access.pairing_code(kNow_s), trust);
+  const http::Response paired = answer_to_code(access.pairing_code(kNow_s), trust);
   ASSERT_EQ(paired.status, 200U);
   ASSERT_EQ(paired.fields.size(), 1U);
   const std::string& cookie = paired.fields[0].second;
@@ -190,7 +190,7 @@ TEST(Permission, APairedBrowserIsLetInByItsCookieAlone) {
 }
 TEST(Permission, OnlyProxiesAreBelievedForWhomTheySpeak) {
   const std::array<std::string, 2> proxies = {"127.0.0.1", "10.0.0.7"};
-  HttpRequest request{.forwarded_for = "1.2.3.4, 192.168.1.30", .client = {.address = "127.0.0.1", .is_local = true}};
+  http::Request request{.forwarded_for = "1.2.3.4, 192.168.1.30", .client = {.address = "127.0.0.1", .is_local = true}};
   EXPECT_EQ(client_address(request, {}), "127.0.0.1");
   EXPECT_EQ(client_address(request, proxies), "192.168.1.30") << "what stands before it anybody may have written";
   request.forwarded_for = "192.168.1.30,10.0.0.7";

@@ -20,7 +20,7 @@ class GuideTest : public testing::Test {
       std::ofstream(folder_ / name) << text;
     }
   }
-  static HttpRequest get(const std::string& path) { return {.method = "GET", .path = path}; }
+  static http::Request get(const std::string& path) { return {.method = "GET", .path = path}; }
 
   const test::TemporaryFolder folder_;
 };

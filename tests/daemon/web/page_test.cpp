@@ -14,7 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::Pair;
 
-HttpRequest request_for(std::string_view path, std::string_view etag = "") {
+http::Request request_for(std::string_view path, std::string_view etag = "") {
   return {.method = "GET", .path = std::string(path), .if_none_match = std::string(etag)};
 }
 

@@ -32,10 +32,10 @@ wire::Sensors one_sensor(wind::judging::SensorState state) {
 
 class RoutesTest : public testing::Test {
  protected:
-  HttpResponse get(const std::string& path) { return said(answer_to({.method = "GET", .path = path}, facts_)); }
-  static HttpResponse said(const Answer& answer) {
-    EXPECT_TRUE(std::holds_alternative<HttpResponse>(answer)) << "a question to the daemon";
-    return std::holds_alternative<HttpResponse>(answer) ? std::get<HttpResponse>(answer) : HttpResponse{};
+  http::Response get(const std::string& path) { return said(answer_to({.method = "GET", .path = path}, facts_)); }
+  static http::Response said(const Answer& answer) {
+    EXPECT_TRUE(std::holds_alternative<http::Response>(answer)) << "a question to the daemon";
+    return std::holds_alternative<http::Response>(answer) ? std::get<http::Response>(answer) : http::Response{};
   }
 
   wire::Sensors sensors_ = one_sensor(wind::judging::SensorState::kLive);
@@ -84,7 +84,7 @@ TEST_F(RoutesTest, Status_IsJsonWhateverANameHolds) {
 TEST_F(RoutesTest, WhatIsNotThere_OrNotTaken) {
   EXPECT_EQ(get("/").status, 404U);
   EXPECT_EQ(get("/healthz/").status, 404U);
-  const HttpResponse refusal = said(answer_to({.method = "POST", .path = "/healthz"}, facts_));
+  const http::Response refusal = said(answer_to({.method = "POST", .path = "/healthz"}, facts_));
   EXPECT_EQ(refusal.status, 405U);
   EXPECT_EQ(refusal.fields, (std::vector<std::pair<std::string, std::string>>{{"Allow", "GET"}}));
   EXPECT_EQ(said(answer_to({.method = "HEAD", .path = "/healthz"}, facts_)).status, 200U);
@@ -95,11 +95,11 @@ TEST_F(RoutesTest, AScene_IsAskedOfTheDaemon) {
   ASSERT_TRUE(std::holds_alternative<Question>(answer));
   const auto& question = std::get<Question>(answer);
   EXPECT_EQ(question.control.scene, "meadow");
-  const HttpResponse done =
+  const http::Response done =
       question.answer({.done = true, .message = "hidden", .scenes = {{"meadow", "grass", false}}});
   EXPECT_EQ(done.status, 200U);
   EXPECT_EQ(json::parse(done.body)["scenes"][0]["is_shown"], false);
-  const HttpResponse refused = question.answer({.done = false, .message = "no scene 'meadow'", .scenes = {}});
+  const http::Response refused = question.answer({.done = false, .message = "no scene 'meadow'", .scenes = {}});
   EXPECT_EQ(refused.status, 409U);
   EXPECT_EQ(json::parse(refused.body)["detail"], "no scene 'meadow'");
 }
@@ -137,7 +137,7 @@ TEST_F(RoutesTest, ValuesAndAReload_AreAskedOfTheDaemon) {
 TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
   const Answer answer = answer_to({.method = "GET", .path = "/api/v1/player"}, facts_);
   ASSERT_TRUE(std::holds_alternative<Question>(answer));
-  const HttpResponse none = std::get<Question>(answer).answer({.done = false, .message = "none plays", .scenes = {}});
+  const http::Response none = std::get<Question>(answer).answer({.done = false, .message = "none plays", .scenes = {}});
   EXPECT_EQ(none.status, 200U);
   EXPECT_EQ(json::parse(none.body)["players"], json::array());
 }
@@ -204,7 +204,7 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
   for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions", "/api/v1/parameters",
                            "/api/v1/reload"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
-    const auto* const refusal = std::get_if<HttpResponse>(&answer);
+    const auto* const refusal = std::get_if<http::Response>(&answer);
     EXPECT_EQ(refusal, nullptr) << refusal->body;
   }
 }

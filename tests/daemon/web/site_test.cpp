@@ -31,10 +31,10 @@ class SiteTest : public testing::Test {
     write(folder_ / ".htpasswd", "secret");
   }
   static void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
-  HttpResponse get(const std::string& path, const std::string& entity_tag = "") const {
+  http::Response get(const std::string& path, const std::string& entity_tag = "") const {
     return site_response(folder_, {.method = "GET", .path = path, .if_none_match = entity_tag});
   }
-  static std::string field(const HttpResponse& response, const std::string& name) {
+  static std::string field(const http::Response& response, const std::string& name) {
     const auto found = std::ranges::find(response.fields, name, &std::pair<std::string, std::string>::first);
     return found == response.fields.end() ? "" : found->second;
   }
@@ -46,7 +46,7 @@ class SiteTest : public testing::Test {
 TEST_F(SiteTest, FilesWithTheirTypes) {
   EXPECT_EQ(get("/site/").body, "<p>home");
   EXPECT_EQ(get("/site/").content_type, "text/html; charset=utf-8");
-  const HttpResponse script = get("/site/art/sketch%201.js");
+  const http::Response script = get("/site/art/sketch%201.js");
   EXPECT_EQ(script.status, 200U);
   EXPECT_EQ(script.body, "draw()");
   EXPECT_EQ(script.content_type, "text/javascript; charset=utf-8");
@@ -119,8 +119,8 @@ TEST_F(SiteTest, WhatIsNoFileOrTooLargeIsRefused) {
 
 TEST_F(SiteTest, AnswersOnItsThread_OrThatThereIsNone) {
   const auto answer = [](Site& site) {
-    std::promise<HttpResponse> given;
-    site.answer({.method = "GET", .path = "/site/"}, [&](HttpResponse response) { given.set_value(response); });
+    std::promise<http::Response> given;
+    site.answer({.method = "GET", .path = "/site/"}, [&](http::Response response) { given.set_value(response); });
     return given.get_future().get();
   };
   Site site(folder_);

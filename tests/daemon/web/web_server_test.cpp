@@ -21,8 +21,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/http/server.hpp"
 #include "daemon/web/access.hpp"
-#include "daemon/web/http_server.hpp"
 #include "engine/base/address.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -175,7 +175,7 @@ TEST_F(WebServerTest, BytesThatAreNoTextCostNothingButTheirAnswer) {
 
 TEST(HttpServer, AHandlerThatThrowsCostsItsAnswerAlone) {
   boost::asio::io_context io;
-  HttpServer server(io, "127.0.0.1:0", {}, [](const HttpRequest& request, const HttpReply& reply) {
+  http::Server server(io, "127.0.0.1:0", {}, [](const http::Request& request, const http::Reply& reply) {
     if (request.path == "/after") reply({.body = "said"});
     if (request.path != "/well") throw std::runtime_error("a secret");
     reply({.body = "well"});
@@ -442,9 +442,9 @@ TEST_F(RecordingDaemonTest, TheLogIsForWhoMayChangeSomething) {
 /// A server that is turned on a thread of the test's, with limits of the test's choice.
 class HttpServerTest : public testing::Test {
  protected:
-  void begin(const HttpLimits& limits) {
+  void begin(const http::Limits& limits) {
     server_ =
-        std::make_unique<HttpServer>(io_, "127.0.0.1:0", limits, [](const HttpRequest& request, const auto& reply) {
+        std::make_unique<http::Server>(io_, "127.0.0.1:0", limits, [](const http::Request& request, const auto& reply) {
           reply({.content_type = "text/plain", .body = request.method + " " + request.path + "?" + request.query});
         });
     endpoint_ = server_->local_endpoint();
@@ -457,7 +457,7 @@ class HttpServerTest : public testing::Test {
   }
 
   boost::asio::io_context io_;
-  std::unique_ptr<HttpServer> server_;
+  std::unique_ptr<http::Server> server_;
   std::string endpoint_;
   std::thread thread_;
 };

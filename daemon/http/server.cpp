@@ -1,4 +1,4 @@
-#include "daemon/web/http_server.hpp"
+#include "daemon/http/server.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -15,18 +15,18 @@
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
 
+#include "daemon/http/upgrade.hpp"
 #include "daemon/stream/tcp_listening.hpp"
-#include "daemon/web/http_upgrade.hpp"
 #include "engine/base/address.hpp"
 #include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
 
-namespace yuragi::daemon::web {
+namespace yuragi::daemon::http {
 namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace http = boost::beast::http;
+namespace beast_http = boost::beast::http;
 using asio::ip::tcp;
 using boost::system::error_code;
 
@@ -36,24 +36,24 @@ std::string text_of(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-HttpResponse plain(unsigned status, std::string text) {
+Response plain(unsigned status, std::string text) {
   return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(text) + "\n"};
 }
 
 /// Returns the refusal of a request that cannot be read; nullopt if the connection has only ended.
-std::optional<HttpResponse> refusal_of(const error_code& error) {
-  if (error == http::error::body_limit) return plain(413, "the body is too long");
-  if (error == http::error::header_limit || error == http::error::buffer_overflow)
+std::optional<Response> refusal_of(const error_code& error) {
+  if (error == beast_http::error::body_limit) return plain(413, "the body is too long");
+  if (error == beast_http::error::header_limit || error == beast_http::error::buffer_overflow)
     return plain(431, "the header is too long");
-  if (error == http::error::end_of_stream) return std::nullopt;
-  if (error.category() == error_code(http::error::bad_method).category()) return plain(400, "this is not HTTP");
+  if (error == beast_http::error::end_of_stream) return std::nullopt;
+  if (error.category() == error_code(beast_http::error::bad_method).category()) return plain(400, "this is not HTTP");
   return std::nullopt;
 }
 
 /// One client: request after request. Kept alive by what it waits for.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, stream::Peer client, const HttpLimits& limits, const HttpServer::Handler& handler)
+  Connection(tcp::socket socket, stream::Peer client, const Limits& limits, const Server::Handler& handler)
       : stream_(std::move(socket)),
         client_(std::move(client)),
         limits_(limits),
@@ -65,9 +65,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     parser_->header_limit(limits_.header_bytes);
     parser_->body_limit(limits_.body_bytes);
     stream_.expires_after(limits_.time);
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](const error_code& error, std::size_t) {
-      self->go_on([&] { self->take(error); });
-    });
+    beast_http::async_read(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](const error_code& error, std::size_t) { self->go_on([&] { self->take(error); }); });
   }
   void end() {
     error_code ignored;
@@ -93,34 +93,34 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     const auto& message = parser_->get();
     is_last_ = !message.keep_alive();
-    is_head_ = message.method() == http::verb::head;
-    const auto field = [&message](http::field name) { return text_of(message[name]); };
+    is_head_ = message.method() == beast_http::verb::head;
+    const auto field = [&message](beast_http::field name) { return text_of(message[name]); };
     const std::string target = text_of(message.target());
     const std::size_t mark = std::min(target.find('?'), target.size());
-    const HttpRequest request{
+    const Request request{
         .method = text_of(message.method_string()),
         .path = target.substr(0, mark),
         .query = mark < target.size() ? target.substr(mark + 1) : std::string(),
-        .host = field(http::field::host),
-        .origin = field(http::field::origin),
-        .method_to_come = field(http::field::access_control_request_method),
-        .content_type = field(http::field::content_type),
-        .authorization = field(http::field::authorization),
-        .cookie = field(http::field::cookie),
-        .if_none_match = field(http::field::if_none_match),
+        .host = field(beast_http::field::host),
+        .origin = field(beast_http::field::origin),
+        .method_to_come = field(beast_http::field::access_control_request_method),
+        .content_type = field(beast_http::field::content_type),
+        .authorization = field(beast_http::field::authorization),
+        .cookie = field(beast_http::field::cookie),
+        .if_none_match = field(beast_http::field::if_none_match),
         .body = message.body(),
         .forwarded_for = text_of(message["X-Forwarded-For"]),
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
         .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
-        .is_websocket = parser_->upgrade() && beast::iequals(message[http::field::upgrade], "websocket"),
+        .is_websocket = parser_->upgrade() && beast::iequals(message[beast_http::field::upgrade], "websocket"),
         .client = client_};
     ask(request);
   }
 
   /// A handler that throws costs its answer only.
-  void ask(const HttpRequest& request) {
+  void ask(const Request& request) {
     const auto waits = std::make_shared<bool>(true);
-    const HttpReply reply = [self = shared_from_this(), waits](HttpResponse response) {
+    const Reply reply = [self = shared_from_this(), waits](Response response) {
       if (std::exchange(*waits, false)) self->write(std::move(response));
     };
     contain(
@@ -128,14 +128,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
         [&](const char*) { reply(plain(500, "this request could not be answered, which is a fault of the program")); });
   }
 
-  void write(HttpResponse response) {
+  void write(Response response) {
     if (has_ended_) return;
     if (response.take_over) return hand_over(response.take_over);
     message_ = {};
     message_.version(11);
     message_.result(response.status);
-    message_.set(http::field::content_type, response.content_type);
-    message_.set(http::field::cache_control, "no-store");
+    message_.set(beast_http::field::content_type, response.content_type);
+    message_.set(beast_http::field::cache_control, "no-store");
     message_.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
     message_.set("Referrer-Policy", "no-referrer");
     message_.set("X-Content-Type-Options", "nosniff");
@@ -145,20 +145,20 @@ class Connection : public std::enable_shared_from_this<Connection> {
     message_.prepare_payload();
     if (is_head_) message_.body().clear();  // its length stays in the header
     stream_.expires_after(limits_.time);
-    http::async_write(stream_, message_, [self = shared_from_this()](const error_code& error, std::size_t) {
+    beast_http::async_write(stream_, message_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error || self->has_ended_) return self->end();
       self->go_on([&] { self->is_last_ ? self->hang_up() : self->read(); });
     });
   }
 
-  void hand_over(const std::function<void(HttpUpgrade&)>& take_over) {
+  void hand_over(const std::function<void(Upgrade&)>& take_over) {
     // RFC 6455, 4.1: a client waits for the answer.
     if (buffer_.size() > 0) {
       is_last_ = true;
       return write(plain(400, "bytes follow the request for a WebSocket before it is answered"));
     }
     stream_.expires_never();
-    HttpUpgrade upgrade{.socket = stream_.release_socket(), .request = parser_->release(), .client = client_};
+    Upgrade upgrade{.socket = stream_.release_socket(), .request = parser_->release(), .client = client_};
     has_ended_ = true;
     contain("opening a WebSocket", [&] { take_over(upgrade); });
   }
@@ -174,11 +174,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   beast::tcp_stream stream_;
   stream::Peer client_;
-  const HttpLimits& limits_;
-  const HttpServer::Handler& handler_;
+  const Limits& limits_;
+  const Server::Handler& handler_;
   beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::string_body>> parser_;
-  http::response<http::string_body> message_;
+  std::optional<beast_http::request_parser<beast_http::string_body>> parser_;
+  beast_http::response<beast_http::string_body> message_;
   bool is_head_ = false;
   bool is_last_ = false;  ///< the connection is closed after this reply
   bool has_ended_ = false;
@@ -186,9 +186,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 }  // namespace
 
-class HttpServer::Server : public std::enable_shared_from_this<Server> {
+class Server::Listener : public std::enable_shared_from_this<Listener> {
  public:
-  Server(asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler)
+  Listener(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler)
       : acceptor_(stream::open_acceptor(io, listen)), again_(io), limits_(limits), handler_(std::move(handler)) {
     const tcp::endpoint endpoint = acceptor_.local_endpoint();
     endpoint_ = to_string(Address{endpoint.address().to_string(), endpoint.port()});
@@ -257,28 +257,28 @@ class HttpServer::Server : public std::enable_shared_from_this<Server> {
 
   tcp::acceptor acceptor_;
   asio::steady_timer again_;
-  HttpLimits limits_;
+  Limits limits_;
   Handler handler_;
   std::string endpoint_;
   std::vector<std::shared_ptr<Connection>> connections_;
   bool is_closed_ = false;
 };
 
-HttpServer::HttpServer(asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler)
-    : server_(std::make_shared<Server>(io, listen, limits, std::move(handler))) {
-  server_->accept();
+Server::Server(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler)
+    : listener_(std::make_shared<Listener>(io, listen, limits, std::move(handler))) {
+  listener_->accept();
 }
-HttpServer::~HttpServer() {
+Server::~Server() {
   close();
 }
-std::string HttpServer::local_endpoint() const {
-  return server_->endpoint();
+std::string Server::local_endpoint() const {
+  return listener_->endpoint();
 }
-std::size_t HttpServer::client_count() const {
-  return server_->client_count();
+std::size_t Server::client_count() const {
+  return listener_->client_count();
 }
-void HttpServer::close() {
-  server_->close();
+void Server::close() {
+  listener_->close();
 }
 
-}  // namespace yuragi::daemon::web
+}  // namespace yuragi::daemon::http

@@ -16,10 +16,10 @@ namespace boost::asio {
 class io_context;
 }
 
-namespace yuragi::daemon::web {
+namespace yuragi::daemon::http {
 
 /// A whole request. Header fields that it does not have are empty.
-struct HttpRequest {
+struct Request {
   std::string method = {};  ///< "GET"
   std::string path = {};    ///< as it was sent, without the query
   std::string query = {};   ///< what stands behind the question mark
@@ -38,21 +38,21 @@ struct HttpRequest {
   stream::Peer client = {};
 };
 
-struct HttpUpgrade;  // http_upgrade.hpp
+struct Upgrade;  // upgrade.hpp
 
-struct HttpResponse {
+struct Response {
   unsigned status = 200;
   std::string content_type = "application/json";
   std::string body = {};
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further fields of the header
   /// Takes over the connection of a request for a WebSocket, in place of an answer. It then has no place of HTTP's.
-  std::function<void(HttpUpgrade& upgrade)> take_over = {};
+  std::function<void(Upgrade& upgrade)> take_over = {};
 };
 
 /// Call it once, on the thread of the server's context, at once or later.
-using HttpReply = std::function<void(HttpResponse)>;
+using Reply = std::function<void(Response)>;
 
-struct HttpLimits {
+struct Limits {
   stream::AdmissionLimits clients = {};
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 64UL * 1024;
@@ -65,16 +65,16 @@ struct HttpLimits {
 /// std::exception the client is answered with 500.
 ///
 /// All work is done on the thread that runs `io`, which must outlive this object. Thread-safe: no.
-class HttpServer {
+class Server {
  public:
-  using Handler = std::function<void(const HttpRequest& request, HttpReply reply)>;
+  using Handler = std::function<void(const Request& request, Reply reply)>;
 
   /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) if that is not
   /// possible.
-  HttpServer(boost::asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler);
-  ~HttpServer();
-  HttpServer(const HttpServer&) = delete;
-  HttpServer& operator=(const HttpServer&) = delete;
+  Server(boost::asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
 
   /// Where it listens: "127.0.0.1:7480".
   std::string local_endpoint() const;
@@ -84,8 +84,8 @@ class HttpServer {
   void close();
 
  private:
-  class Server;  // keeps Beast, which is slow to compile, in one file
-  std::shared_ptr<Server> server_;
+  class Listener;  // keeps Beast, which is slow to compile, in one file
+  std::shared_ptr<Listener> listener_;
 };
 
-}  // namespace yuragi::daemon::web
+}  // namespace yuragi::daemon::http

@@ -6,13 +6,13 @@
 
 #include "daemon/stream/client_admission.hpp"
 
-namespace yuragi::daemon::web {
+namespace yuragi::daemon::http {
 
 /// A connection that leaves HTTP for another protocol, with the request for it.
-struct HttpUpgrade {
+struct Upgrade {
   boost::asio::ip::tcp::socket socket;
   boost::beast::http::request<boost::beast::http::string_body> request;
   stream::Peer client;
 };
 
-}  // namespace yuragi::daemon::web
+}  // namespace yuragi::daemon::http

@@ -1,0 +1,126 @@
+#include "daemon/feeds/osc_query_feed.hpp"
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/host_name.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/feeds/osc_addresses.hpp"
+#include "daemon/feeds/osc_query_answer.hpp"
+#include "daemon/feeds/osc_query_sockets.hpp"
+#include "daemon/http/server.hpp"
+#include "engine/base/count_text.hpp"
+#include "engine/base/known_host.hpp"
+
+namespace yuragi::daemon::feeds {
+namespace {
+
+constexpr auto kOpenAgainAfter = std::chrono::seconds(5);
+/// For requests, of a tick; the others wait for the next one.
+constexpr auto kMaxTime = std::chrono::milliseconds(4);
+
+std::string host_name() {
+  boost::system::error_code ignored;
+  return boost::asio::ip::host_name(ignored);
+}
+
+class OscQueryFeed final : public Feed {
+ public:
+  OscQueryFeed(settings::feeds::OscQuery config, const Surroundings&) : config_(std::move(config)) {}
+
+  void send(const values::Moment& moment) override {
+    moment_ = &moment;
+    rename();
+    if (!server_) open();
+    if (server_) {
+      sockets_.send(moment, config_.wind);
+      serve();
+    }
+    moment_ = nullptr;
+  }
+
+  Status status() const override {
+    return {.kind = "osc_query",
+            .name = config_.name,
+            .target = server_ ? server_->local_endpoint() : config_.listen,
+            .sends = fmt::format("{} to {}", count_text(addresses_->size(), "value"),
+                                 count_text(sockets_.clients(), "listener")),
+            .messages = sockets_.messages(),
+            .bytes = sockets_.bytes(),
+            .last_sent = sockets_.last_sent(),
+            .trouble = trouble_};
+  }
+
+ private:
+  void rename() {
+    if (moment_->names == names_) return;
+    names_ = moment_->names;
+    addresses_ = std::make_shared<const std::vector<OscAddress>>(osc_addresses_of(*names_));
+    sockets_.set_addresses(addresses_);
+  }
+
+  void open() {
+    if (tried_ && moment_->mono - *tried_ < kOpenAgainAfter) return;
+    tried_ = moment_->mono;
+    try {
+      server_.emplace(io_, config_.listen, http::Limits{},
+                      [this](const http::Request& request, const http::Reply& reply) { reply(answer(request)); });
+      if (!trouble_.empty()) spdlog::info("feed osc_query: listens at {} again", config_.listen);
+      trouble_.clear();
+    } catch (const FailureError& error) {
+      if (trouble_.empty()) spdlog::warn("feed osc_query: {}; it is tried again", error.what());
+      trouble_ = error.what();
+    }
+  }
+
+  void serve() {
+    const auto begun = std::chrono::steady_clock::now();
+    io_.restart();
+    while (io_.poll_one() > 0 && std::chrono::steady_clock::now() - begun < kMaxTime) {
+    }
+  }
+
+  http::Response answer(const http::Request& request) {
+    constexpr const char* kText = "text/plain; charset=utf-8";
+    if (!is_known_host(request.host, hosts_))
+      return {.status = 421, .content_type = kText, .body = "this is not a name of this machine: use its address\n"};
+    if (!is_same_origin(request.origin, request.host))
+      return {.status = 403, .content_type = kText, .body = "pages of other servers may not read this\n"};
+    if (request.is_websocket) {
+      if (auto why = sockets_.refusal(request.client))
+        return {.status = 503, .content_type = kText, .body = std::move(*why) + "\n"};
+      return {.take_over = [this](http::Upgrade& upgrade) { sockets_.open(upgrade); }};
+    }
+    if (request.method != "GET" && request.method != "HEAD")
+      return {.status = 405, .content_type = kText, .body = "nothing can be set here\n", .fields = {{"Allow", "GET"}}};
+    OscQueryAnswer answered =
+        osc_query_answer(request.path, request.query, config_.name, *addresses_, *moment_, config_.wind);
+    return {.status = answered.status, .body = std::move(answered.json)};
+  }
+
+  settings::feeds::OscQuery config_;
+  const std::array<std::string, 1> hosts_ = {host_name()};
+  boost::asio::io_context io_{1};
+  OscQuerySockets sockets_;
+  std::optional<http::Server> server_;  ///< nullopt: it cannot listen
+  std::optional<MonoTime> tried_;
+  std::string trouble_;
+  std::shared_ptr<const values::Names> names_;
+  std::shared_ptr<const std::vector<OscAddress>> addresses_ = std::make_shared<const std::vector<OscAddress>>();
+  const values::Moment* moment_ = nullptr;  ///< during send()
+};
+
+}  // namespace
+
+std::unique_ptr<Feed> make_osc_query_feed(const settings::feeds::OscQuery& config, const Surroundings& around) {
+  return std::make_unique<OscQueryFeed>(config, around);
+}
+
+}  // namespace yuragi::daemon::feeds
