@@ -29,6 +29,7 @@ constexpr double kStatesEvery_s = 5.0;
 /// Scenes are shown and hidden at most so often in a second.
 constexpr std::size_t kMaxCommands = 10;
 constexpr double kRefusalsEvery_s = 60.0;
+constexpr double kNamesKnownAfter_s = 10.0;
 constexpr std::size_t kMaxReceived_bytes = 64;
 
 class MqttFeed final : public Feed {
@@ -37,7 +38,7 @@ class MqttFeed final : public Feed {
       : config_(config),
         around_(around),
         device_{.id = home_assistant_id(config.topic), .url = around.page_url},
-        link_(config, mqtt_subscriptions(config), times),
+        link_(config, mqtt_subscriptions(config, device_.id), times),
         wind_(config.every_s),
         sensors_(config.every_s) {
     if (config.fast_hz > 0.0) fast_.emplace(1.0 / config.fast_hz);
@@ -48,6 +49,7 @@ class MqttFeed final : public Feed {
     posts_.clear();
     rename(moment);
     take_received(moment);
+    remove_old_entities(moment.time_s);
     const values::Readout& wind = moment.wind(config_.wind);
     window_.add(wind, moment.time_s);
     if (begun_s_ && wind_.is_due(moment.time_s - *begun_s_))
@@ -92,6 +94,7 @@ class MqttFeed final : public Feed {
                       .is_retained = is_retained,
                       .is_state = true});
   }
+  static std::string text_of(const MqttMessage& message) { return {message.payload.begin(), message.payload.end()}; }
   static std::string on_or_off(bool is_on) { return is_on ? "ON" : "OFF"; }
 
   /// Other sensors, scenes or alerts.
@@ -112,11 +115,26 @@ class MqttFeed final : public Feed {
     alerts_sent_.clear();
     states_sent_.assign(names_.sensors.size(), std::nullopt);
     opacities_sent_.assign(names_.scenes.size(), std::nullopt);
-    if (config_.home_assistant.empty()) return;
-    posts_.push_back({.topic = fmt::format("{}/device/{}/config", config_.home_assistant, device_.id),
-                      .payload = home_assistant_config(config_, device_, names_),
+    if (!config_.home_assistant.empty()) post_discovery(home_assistant_entities(discovery_));
+  }
+
+  /// `before`: the entities that Home Assistant may know.
+  void post_discovery(const HomeAssistantEntities& before) {
+    discovery_ = home_assistant_config(config_, device_, names_, before);
+    posts_.push_back({.topic = home_assistant_topic(config_, device_.id),
+                      .payload = discovery_,
                       .is_retained = true,
                       .is_state = true});
+  }
+
+  /// Removes the entities that this installation had before it was started, and has no more. Not at once: names of
+  /// scenes and alerts come with the first moments, and Home Assistant forgets what a person chose for what is removed.
+  void remove_old_entities(double time_s) {
+    if (entities_before_.empty() || !begun_s_ || time_s - *begun_s_ < kNamesKnownAfter_s) return;
+    const HomeAssistantEntities now = home_assistant_entities(discovery_);
+    const HomeAssistantEntities before = std::exchange(entities_before_, {});
+    const auto is_known = [&now](const auto& entity) { return now.contains(entity.first); };
+    if (!std::ranges::all_of(before, is_known)) post_discovery(before);
   }
 
   void add_sensors(const values::Moment& moment) {
@@ -168,9 +186,14 @@ class MqttFeed final : public Feed {
   }
 
   void take(const MqttMessage& message) {
+    if (!config_.home_assistant.empty() && message.topic == home_assistant_topic(config_, device_.id)) {
+      // One that is not retained is our own.
+      if (message.is_retained) entities_before_ = home_assistant_entities(text_of(message));
+      return;
+    }
     // A message that was kept for later is no command of now. All states have been sent since the connection.
     const bool is_short = !message.is_too_long && message.payload.size() <= kMaxReceived_bytes;
-    const std::string payload = is_short ? std::string(message.payload.begin(), message.payload.end()) : std::string();
+    const std::string payload = is_short ? text_of(message) : std::string();
     const auto command =
         is_short ? mqtt_command_of(config_, names_, message.topic, payload) : std::optional<MqttCommand>();
     if (command && command->scene.empty()) {
@@ -193,6 +216,8 @@ class MqttFeed final : public Feed {
   std::optional<Interval> fast_;
   std::shared_ptr<const values::Names> shared_names_;
   MqttNames names_;
+  std::string discovery_;                  ///< the last one
+  HomeAssistantEntities entities_before_;  ///< of an earlier run
   std::vector<values::AlertState> alerts_sent_;
   std::optional<bool> needed_attention_;
   std::vector<std::optional<wind::judging::SensorState>> states_sent_;

@@ -83,8 +83,12 @@ std::string home_assistant_id(const std::string& topic) {
   return fmt::format("yuragi_{:016x}", math::stream_id(machine_id() + topic));
 }
 
+std::string home_assistant_topic(const settings::feeds::Mqtt& config, const std::string& device_id) {
+  return fmt::format("{}/device/{}/config", config.home_assistant, device_id);
+}
+
 std::string home_assistant_config(const settings::feeds::Mqtt& config, const HomeAssistantDevice& device,
-                                  const MqttNames& names) {
+                                  const MqttNames& names, const HomeAssistantEntities& before) {
   const std::string& topic = config.topic;
   Json components = Json::object();
   const auto add = [&](const std::string& key, const std::string& name, Json component) {
@@ -130,6 +134,10 @@ std::string home_assistant_config(const settings::feeds::Mqtt& config, const Hom
     add("scene_" + names.scene_parts[i], names.scenes[i],
         {{"platform", "switch"}, {"state_topic", scene}, {"command_topic", scene + "/set"}});
   }
+  // An entity with a platform alone is removed.
+  for (const auto& [key, platform] : before) {
+    if (!components.contains(key)) components[key] = {{"platform", platform}};
+  }
   const std::size_t last_level = topic.rfind('/') + 1;  // 0 if there is one level
   Json dev{{"identifiers", {device.id}},
            {"name", topic == "yuragi" ? "Yuragi" : "Yuragi " + topic.substr(last_level)},
@@ -143,9 +151,22 @@ std::string home_assistant_config(const settings::feeds::Mqtt& config, const Hom
                         {"cmps", std::move(components)}});
 }
 
-std::vector<std::string> mqtt_subscriptions(const settings::feeds::Mqtt& config) {
+HomeAssistantEntities home_assistant_entities(std::string_view discovery) {
+  HomeAssistantEntities entities;
+  const Json json = Json::parse(discovery, nullptr, false);
+  const auto components = json.is_object() ? json.find("cmps") : json.end();
+  if (components == json.end() || !components->is_object()) return entities;
+  for (const auto& [key, component] : components->items()) {
+    const auto platform = component.is_object() ? component.find("platform") : component.end();
+    if (platform != component.end() && platform->is_string()) entities.emplace(key, platform->get<std::string>());
+  }
+  return entities;
+}
+
+std::vector<std::string> mqtt_subscriptions(const settings::feeds::Mqtt& config, const std::string& device_id) {
   std::vector<std::string> topics;
-  if (!config.home_assistant.empty()) topics.push_back(config.home_assistant + "/status");
+  if (!config.home_assistant.empty())
+    topics = {config.home_assistant + "/status", home_assistant_topic(config, device_id)};
   if (config.takes_commands) topics.push_back(config.topic + "/scene/+/set");
   return topics;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,9 +37,19 @@ struct HomeAssistantDevice {
 /// An ID that depends on this machine and the topic alone. Reads /etc/machine-id, which it does not disclose.
 std::string home_assistant_id(const std::string& topic);
 
-/// PREFIX/device/ID/config: the discovery of a device with all its entities (Home Assistant 2024.11 and later).
+/// The topic of a device's discovery, which is retained: PREFIX/device/ID/config.
+std::string home_assistant_topic(const settings::feeds::Mqtt& config, const std::string& device_id);
+
+/// Entities of Home Assistant: the kind of each ("binary_sensor") by its key.
+using HomeAssistantEntities = std::map<std::string, std::string>;
+
+/// The discovery of a device with all its entities (Home Assistant 2024.11 and later), which removes those of `before`
+/// that are no longer there.
 std::string home_assistant_config(const settings::feeds::Mqtt& config, const HomeAssistantDevice& device,
-                                  const MqttNames& names);
+                                  const MqttNames& names, const HomeAssistantEntities& before = {});
+
+/// The entities in a discovery that was published before; none if it is not one. Never throws for any bytes.
+HomeAssistantEntities home_assistant_entities(std::string_view discovery);
 
 /// What a message that came in asks for.
 struct MqttCommand {
@@ -48,7 +59,7 @@ struct MqttCommand {
 };
 
 /// What is subscribed to.
-std::vector<std::string> mqtt_subscriptions(const settings::feeds::Mqtt& config);
+std::vector<std::string> mqtt_subscriptions(const settings::feeds::Mqtt& config, const std::string& device_id);
 
 /// Reads a message of a topic of mqtt_subscriptions(); nullopt if it means nothing here. Never throws for any bytes.
 std::optional<MqttCommand> mqtt_command_of(const settings::feeds::Mqtt& config, const MqttNames& names,

@@ -23,6 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::size_t end = std::min(text.find('\0'), text.size());
   const std::string_view topic = text.substr(0, end);
   const auto command = feeds::mqtt_command_of(kConfig, kNames, topic, text.substr(std::min(end + 1, text.size())));
+  feeds::home_assistant_entities(text);
   if (command && !command->scene.empty() && std::ranges::count(kNames.scenes, command->scene) == 0) std::abort();
   if (command && command->scene.empty() != (topic == "ha/status")) std::abort();
   return 0;

@@ -301,6 +301,16 @@ std::size_t Dmx::universe_count() const noexcept {
   return count;
 }
 
+bool Dmx::clashes_with(const Dmx& other) const {
+  if (protocol != other.protocol) return false;
+  for (std::size_t index = 0; index < universe_count(); ++index) {
+    const int number = universe + static_cast<int>(index);
+    if (number < other.universe || number >= other.universe + static_cast<int>(other.universe_count())) continue;
+    if (target(index) == other.target(static_cast<std::size_t>(number - other.universe))) return true;
+  }
+  return false;
+}
+
 std::string Dmx::target(std::size_t index) const {
   const std::size_t number = static_cast<std::size_t>(universe) + index;
   if (to == kDmxMulticast) {

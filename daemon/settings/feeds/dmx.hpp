@@ -92,6 +92,8 @@ struct Dmx {
   friend bool operator==(const Dmx&, const Dmx&) = default;
 
   std::size_t universe_count() const noexcept;
+  /// Does it send a universe to the same receiver as `other`? Then each undoes what the other sends.
+  bool clashes_with(const Dmx& other) const;
   /// HOST:PORT to which a universe is sent; `index`: counted from the feed's.
   std::string target(std::size_t index) const;
 };

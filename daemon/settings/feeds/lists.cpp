@@ -44,9 +44,22 @@ std::vector<ParameterError> add_osc_cue(Config& config, const std::string&, cons
   return add_to(config.osc.back().cues, osc_cue_of(values, names));
 }
 
+/// The last [[dmx]] beside the others. `key`: of the table that was added.
+std::vector<ParameterError> dmx_clashes(const Config& config, const char* key) {
+  for (std::size_t i = 0; i + 1 < config.dmx.size(); ++i) {
+    if (!config.dmx.back().clashes_with(config.dmx[i])) continue;
+    return {
+        {key, fmt::format("makes this [[dmx]] send a universe to the receiver of the [[dmx]] \"{}\": both would undo "
+                          "each other; give one [[dmx]] all channels, or choose another universe",
+                          config.dmx[i].name)}};
+  }
+  return {};
+}
+
 std::vector<ParameterError> add_dmx(Config& config, const std::string& name, const ParameterValues& values,
                                     const values::Names&) {
-  return add_to(config.dmx, dmx_of(name, values));
+  auto errors = add_to(config.dmx, dmx_of(name, values));
+  return errors.empty() ? dmx_clashes(config, "universe") : errors;
 }
 
 std::vector<ParameterError> add_dmx_channel(Config& config, const std::string&, const ParameterValues& values,
@@ -64,7 +77,8 @@ std::vector<ParameterError> add_dmx_grid(Config& config, const std::string&, con
   if (grid && pixels > kMaxDmxPixels)
     return {
         {"columns", fmt::format("and rows make {} pixels with the other grids (maximum {})", pixels, kMaxDmxPixels)}};
-  return add_to(config.dmx.back().grids, std::move(grid));
+  auto errors = add_to(config.dmx.back().grids, std::move(grid));
+  return errors.empty() ? dmx_clashes(config, "columns") : errors;
 }
 
 std::vector<ParameterError> add_nmea(Config& config, const std::string& name, const ParameterValues& values,

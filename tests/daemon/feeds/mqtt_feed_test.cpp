@@ -206,6 +206,23 @@ TEST(MqttFeedTest, HomeAssistantGetsAllStatesWhenItStarts) {
   reader.next("y/scene/meadow", run.steps());
 }
 
+TEST(MqttFeedTest, EntitiesOfAnEarlierConfigurationAreRemoved) {
+  const MosquittoBroker broker;
+  Reader reader(broker.port());
+  {
+    FeedRun earlier(broker.port());
+    reader.next(earlier.discovery(), earlier.steps());
+    earlier.end();
+  }
+  FeedRun run(broker.port());
+  run.moment().health = std::make_shared<const values::Health>();  // before its first moment: without the alert
+  nlohmann::json entity;
+  while (entity != nlohmann::json{{"platform", "binary_sensor"}})
+    entity = nlohmann::json::parse(text_of(reader.next(run.discovery(), run.steps())))
+                 .at("cmps")
+                 .value("alert_storm", nlohmann::json());
+}
+
 TEST(MqttFeedTest, CommandsReachTheirSceneAndAllElseIsRefused) {
   const MosquittoBroker broker;
   Reader reader(broker.port());

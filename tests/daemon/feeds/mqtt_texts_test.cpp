@@ -12,7 +12,11 @@ namespace {
 
 using nlohmann::json;
 using settings::feeds::Mqtt;
+using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
 using testing::StartsWith;
 using values::Quantity;
 
@@ -90,8 +94,28 @@ TEST(MqttTextsTest, WithoutCommandsThereIsNoSwitchAndNothingIsSubscribedTo) {
   const json config = json::parse(home_assistant_config(config_of(false), {.id = "yuragi_1", .url = ""}, some_names()));
   EXPECT_FALSE(config.at("cmps").contains("scene_a_b"));
   EXPECT_FALSE(config.at("dev").contains("configuration_url"));
-  EXPECT_THAT(mqtt_subscriptions(config_of(false)), ElementsAre("homeassistant/status"));
-  EXPECT_THAT(mqtt_subscriptions(config_of(true)), ElementsAre("homeassistant/status", "yuragi/hall-2/scene/+/set"));
+  EXPECT_THAT(mqtt_subscriptions(config_of(false), "yuragi_1"),
+              ElementsAre("homeassistant/status", "homeassistant/device/yuragi_1/config"));
+  EXPECT_THAT(mqtt_subscriptions(config_of(true), "yuragi_1"), Contains("yuragi/hall-2/scene/+/set"));
+}
+
+TEST(MqttTextsTest, WhatIsNoLongerThereIsRemoved) {
+  const HomeAssistantDevice device{.id = "yuragi_1", .url = ""};
+  const HomeAssistantEntities before =
+      home_assistant_entities(home_assistant_config(config_of(true), device, some_names()));
+  EXPECT_THAT(before, AllOf(Contains(Pair("scene_a_b", "switch")), Contains(Pair("alert_storm", "binary_sensor"))));
+  MqttNames fewer = some_names();
+  fewer.alerts.clear();
+  fewer.alert_parts.clear();
+  const json config = json::parse(home_assistant_config(config_of(false), device, fewer, before));
+  EXPECT_EQ(config.at("cmps").at("alert_storm"), (json{{"platform", "binary_sensor"}}));
+  EXPECT_EQ(config.at("cmps").at("scene_a_b"), (json{{"platform", "switch"}}));
+  EXPECT_TRUE(config.at("cmps").at("speed").contains("unique_id"));
+}
+
+TEST(MqttTextsTest, WhatIsNoDiscoveryHasNoEntities) {
+  for (const char* const text : {"", "{", "[]", "7", R"({"cmps": []})", R"({"cmps": {"a": 7, "b": {"platform": 7}}})"})
+    EXPECT_THAT(home_assistant_entities(text), IsEmpty()) << text;
 }
 
 TEST(MqttTextsTest, ASlowWindExpiresLater) {
