@@ -58,7 +58,7 @@ if(CMAKE_CROSSCOMPILING) # config/package.sh gives dpkg-shlibdeps DEB_HOST_ARCH
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
 endif()
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "systemd, tzdata, libegl1, gnuplot-nox | gnuplot-qt | gnuplot-x11")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xinit, xserver-xorg-core, xserver-xorg-input-libinput, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xinit, xserver-xorg-core, xserver-xorg-input-libinput, libgl1-mesa-dri, avahi-daemon, avahi-utils")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, ffmpeg")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "animation of grass, cloth, trees and flames by the real wind")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Yuragi reads anemometers, follows the wind with a noise-driven animation

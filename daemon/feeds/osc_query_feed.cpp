@@ -1,5 +1,6 @@
 #include "daemon/feeds/osc_query_feed.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <optional>
@@ -8,14 +9,17 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/host_name.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/feeds/announcement.hpp"
 #include "daemon/feeds/osc_addresses.hpp"
 #include "daemon/feeds/osc_query_answer.hpp"
 #include "daemon/feeds/osc_query_sockets.hpp"
 #include "daemon/http/server.hpp"
+#include "engine/base/address.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/known_host.hpp"
 
@@ -31,9 +35,20 @@ std::string host_name() {
   return boost::asio::ip::host_name(ignored);
 }
 
+/// The port at which other machines reach what listens at an address; 0: they do not.
+std::uint16_t port_for_others(const std::string& listen) {
+  const auto address = parse_address(listen.starts_with(':') ? "0.0.0.0" + listen : listen);
+  if (!address) return 0;
+  boost::system::error_code is_a_name;
+  const auto ip = boost::asio::ip::make_address(address->host, is_a_name);
+  const bool is_here = is_a_name ? address->host == "localhost" : ip.is_loopback();
+  return is_here ? std::uint16_t{0} : address->port;
+}
+
 class OscQueryFeed final : public Feed {
  public:
-  OscQueryFeed(settings::feeds::OscQuery config, const Surroundings&) : config_(std::move(config)) {}
+  OscQueryFeed(settings::feeds::OscQuery config, const Surroundings& around)
+      : config_(std::move(config)), page_listen_(around.page_listen) {}
 
   void send(const values::Moment& moment) override {
     moment_ = &moment;
@@ -42,6 +57,7 @@ class OscQueryFeed final : public Feed {
     if (server_) {
       sockets_.send(moment, config_.wind);
       serve();
+      for (Announcement& announcement : announcements_) announcement.check(moment.mono);
     }
     moment_ = nullptr;
   }
@@ -55,10 +71,27 @@ class OscQueryFeed final : public Feed {
             .messages = sockets_.messages(),
             .bytes = sockets_.bytes(),
             .last_sent = sockets_.last_sent(),
-            .trouble = trouble_};
+            .trouble = trouble_.empty() ? announcement_trouble() : trouble_};
   }
 
  private:
+  std::string announcement_trouble() const {
+    const auto found = std::ranges::find_if(announcements_, [](const auto& one) { return !one.trouble().empty(); });
+    return found != announcements_.end() ? found->trouble() : std::string();
+  }
+
+  /// It, the page and the sensors, if other machines reach them.
+  void announce() {
+    if (!config_.announces) return;
+    std::vector<settings::feeds::NetworkService> services = config_.sensors;
+    services.push_back({.type = "_oscjson._tcp", .address = server_->local_endpoint()});
+    if (!page_listen_.empty()) services.push_back({.type = "_http._tcp", .address = page_listen_});
+    for (const auto& [type, address] : services) {
+      if (const std::uint16_t port = port_for_others(address); port != 0)
+        announcements_.emplace_back(config_.name, AnnouncedService{.type = type, .port = port});
+    }
+  }
+
   void rename() {
     if (moment_->names == names_) return;
     names_ = moment_->names;
@@ -74,6 +107,7 @@ class OscQueryFeed final : public Feed {
                       [this](const http::Request& request, const http::Reply& reply) { reply(answer(request)); });
       if (!trouble_.empty()) spdlog::info("feed osc_query: listens at {} again", config_.listen);
       trouble_.clear();
+      announce();
     } catch (const FailureError& error) {
       if (trouble_.empty()) spdlog::warn("feed osc_query: {}; it is tried again", error.what());
       trouble_ = error.what();
@@ -112,6 +146,8 @@ class OscQueryFeed final : public Feed {
   std::optional<http::Server> server_;  ///< nullopt: it cannot listen
   std::optional<MonoTime> tried_;
   std::string trouble_;
+  std::string page_listen_;
+  std::vector<Announcement> announcements_;  ///< since it listens
   std::shared_ptr<const values::Names> names_;
   std::shared_ptr<const std::vector<OscAddress>> addresses_ = std::make_shared<const std::vector<OscAddress>>();
   const values::Moment* moment_ = nullptr;  ///< during send()

@@ -467,6 +467,7 @@ class Service::Io {
   /// Feeds show and hide scenes by a right of their own.
   feeds::Surroundings surroundings() {
     return {.page_url = web_ ? page_url(web_->local_endpoint()) : std::string(),
+            .page_listen = http_.listen,
             .show_scene = [this](const std::string& scene, bool shown) {
               asio::post(io_, [this, scene, shown] { show_scene({.scene = scene, .shown = shown}); });
             }};

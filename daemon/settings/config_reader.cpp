@@ -33,6 +33,17 @@ const Description& description_named(std::span<const Description* const> table, 
   throw std::logic_error("no " + std::string(name) + " in its table");
 }
 
+/// The sensors that senders find by searching the network.
+std::vector<feeds::NetworkService> services_of(std::span<const SensorConfig> sensors) {
+  std::vector<feeds::NetworkService> all;
+  for (const SensorConfig& sensor : sensors) {
+    if (sensor.driver->service_type.empty()) continue;
+    for (const drivers::sensor::Endpoint& endpoint : sensor.driver->endpoints(sensor.values))
+      all.push_back({.type = std::string(sensor.driver->service_type), .address = endpoint.name});
+  }
+  return all;
+}
+
 /// The sensor of a file without any.
 SensorConfig synthetic_sensor() {
   const drivers::sensor::DriverDescription& synthetic = description_named(drivers::sensor::driver_table(), "synthetic");
@@ -126,6 +137,7 @@ class ConfigReader {
     if (const toml::node* node = root.get(output::kOutputList); node != nullptr && is_list(*node))
       config.outputs = output::read_outputs(root, mistakes_);
     for (const feeds::ListTable& list : feeds::list_tables()) read_list(root, list, config);
+    config.feeds.osc_query.sensors = services_of(config.sensors);
     if (!mistakes_.empty()) throw ConfigError(mistakes_.text());
     return config;
   }

@@ -278,6 +278,7 @@ const sensor::DriverDescription kOscDriver{
     .parameters = kOscFields.parameters(),
     .open = open_osc,
     .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kOscFields.of(values).port); },
+    .service_type = "_osc._udp",
     .selection = osc_selection,
     .unchanged_for_s = osc_unchanged_for_s,
     .simulated = osc_simulated};

@@ -77,6 +77,8 @@ struct DriverDescription {
   /// Returns what a sensor of these values needs, without touching it; nullptr: nothing. The doctor checks whether it
   /// exists, and two sensors that claim the same are refused. Does not throw, even for values that open() refuses.
   std::vector<Endpoint> (*endpoints)(const ParameterValues& values) = nullptr;
+  /// By which type senders find a sensor at its endpoints in the network (RFC 6763): "_osc._udp"; empty: by none.
+  std::string_view service_type = {};
   /// Which values a sensor of these values reads, without touching its device, of values that open() takes; nullptr:
   /// no two sensors read the same. Two sensors of the driver are refused if one's selection covers the other's.
   ValueSelection (*selection)(const ParameterValues& values) = nullptr;

@@ -9,12 +9,20 @@
 
 namespace yuragi::daemon::settings::feeds {
 
+/// Where something listens, for programs that search the network.
+struct NetworkService {
+  std::string type = {};     ///< RFC 6763: "_osc._udp"
+  std::string address = {};  ///< ADDRESS:PORT; :PORT: all addresses
+  friend bool operator==(const NetworkService&, const NetworkService&) = default;
+};
+
 /// [osc_query]: where programs read which OSC addresses there are, and listen to them.
 struct OscQuery {
   std::string listen = {};  ///< ADDRESS:PORT; empty: nowhere
   bool announces = false;
   std::string name = {};  ///< for other programs
   values::Wind wind = values::Wind::kShaped;
+  std::vector<NetworkService> sensors = {};  ///< that others send to
   friend bool operator==(const OscQuery&, const OscQuery&) = default;
 };
 
