@@ -38,6 +38,7 @@ test_packages=(
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
   mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines
   python3-nmea2                                           # an independent reader of NMEA 0183
+  puredata-core                                           # runs an example
   avahi-daemon avahi-utils dbus-daemon iproute2           # services that a network's programs find, in networks of a test's own
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
@@ -50,17 +51,17 @@ test_packages=(
   qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine
 )
 
-# The packages of tests/e2e/browser, where npm can get them.
-install_browser_tools() {
-  local from=tests/e2e/browser to=build/browser
-  cmp -s $from/package-lock.json $to/package-lock.json && [ -d $to/node_modules ] && return
-  mkdir -p $to
-  cp $from/package.json $from/package-lock.json $to
-  if npm ci --prefix $to --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null; then
-    echo "setup: the browser's tests have what they need in $to."
+# install_from_npm NAME: the packages of tests/e2e/NAME into build/NAME, where npm can get them.
+install_from_npm() {
+  local from=tests/e2e/$1 to=build/$1
+  cmp -s "$from/package-lock.json" "$to/package-lock.json" && [ -d "$to/node_modules" ] && return
+  mkdir -p "$to"
+  cp "$from/package.json" "$from/package-lock.json" "$to"
+  if npm ci --prefix "$to" --ignore-scripts --omit=optional --no-audit --no-fund --loglevel=error >/dev/null; then
+    echo "setup: the tests have in $to what they need from npm."
   else
-    rm -f $to/package-lock.json # tried again the next time
-    echo "setup: npm could not install $from: the browser's tests will be skipped."
+    rm -f "$to/package-lock.json" # tried again the next time
+    echo "setup: npm could not install $from: the tests that need it will be skipped."
   fi
 }
 
@@ -72,7 +73,10 @@ case "${1:-}" in
   --test)
     packages+=("${test_packages[@]}" "${arm64_packages[@]}")
     command -v npm >/dev/null || packages+=(npm) # Node.js of others brings its own
-    finish() { install_browser_tools; } ;;
+    finish() {
+      install_from_npm browser
+      install_from_npm node_red
+    } ;;
   --arm64) packages+=("${arm64_packages[@]}") ;;
   --list) printf '%s\n' "${build_packages[@]%%|*}" "${test_packages[@]}" "${arm64_packages[@]}"; exit 0 ;;
   *) echo "usage: config/setup.sh [--test | --arm64 | --list]" >&2; exit 64 ;;
