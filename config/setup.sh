@@ -38,7 +38,7 @@ test_packages=(
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
   mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines
   python3-nmea2                                           # an independent reader of NMEA 0183
-  puredata-core                                           # runs an example
+  puredata-core python3-yaml                              # run and read examples
   avahi-daemon avahi-utils dbus-daemon iproute2           # services that a network's programs find, in networks of a test's own
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
