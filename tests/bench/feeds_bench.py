@@ -29,6 +29,7 @@ import yuragi_client  # noqa: E402
 LOW_M_S, HIGH_M_S, STEP_S, SENSOR_HZ = 3.0, 9.0, 2.0, 60.0
 MIDDLE_M_S = (LOW_M_S + HIGH_M_S) / 2
 DMX_MAX_M_S = 12.0
+PING, PONG = 9, 10  # of a WebSocket's frames
 
 
 def osc(address, *numbers):
@@ -66,10 +67,14 @@ def web_socket(port, path, wish):
     text = json.dumps(wish).encode()
     connection.sendall(bytes([0x81, 0x80 | len(text)]) + bytes(4) + text)
     while True:
-        length = exactly(connection, 2)[1]
+        kind, length = exactly(connection, 2)
         if length == 126:
             length = struct.unpack(">H", exactly(connection, 2))[0]
-        yield exactly(connection, length)
+        payload = exactly(connection, length)
+        if kind & 0x0F == PING:
+            connection.sendall(bytes([0x80 | PONG, 0x80 | length]) + bytes(4) + payload)
+        else:
+            yield payload
 
 
 class Feed:

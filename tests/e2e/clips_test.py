@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The examples for other programs, in these programs: Pure Data and Node-RED get the wind that a daemon sends. The entities that the
-example for Home Assistant names are those that a daemon announces.
+"""The examples for other programs, in these programs: Pure Data and Node-RED get the wind that a daemon sends. The entities that
+the example for Home Assistant names are those that a daemon announces.
 
 usage: clips_test.py FOLDER_OF_PROGRAMS
 """
@@ -89,13 +89,15 @@ class Clips(unittest.TestCase):
         # The example shows numbers and plays; here both are printed. Connections name objects by their place, without the canvas.
         objects = [line for line in lines if not line.startswith(("#N", "#X connect"))]
         place = {name: i for i, line in enumerate(objects) for name in ("route speed", "dac~") if f" {name} " in line}
-        source = next(line.split()[2] for line in lines if line.startswith("#X connect") and line.split()[4] == str(place["dac~"]))
+        connections = [line.split() for line in lines if line.startswith("#X connect")]
+        source = next(words[2] for words in connections if words[4] == str(place["dac~"]))
         names = re.search("route (speed .*);", objects[place["route speed"]])[1].split()
         added = [*(f"print {name}" for name in names), "env~ 4096 4096", "print loudness"]
         lines[len(objects) + 1:len(objects) + 1] = [f"#X obj 20 20 {text};" for text in added]
         first = len(objects)
         lines += [f"#X connect {place['route speed']} {i} {first + i} 0;" for i in range(len(names))]
-        lines += [f"#X connect {source} 0 {first + len(names)} 0;", f"#X connect {first + len(names)} 0 {first + len(names) + 1} 0;"]
+        loudness = first + len(names)
+        lines += [f"#X connect {source} 0 {loudness} 0;", f"#X connect {loudness} 0 {loudness + 1} 0;"]
         (self.folder / "wind.pd").write_text("\n".join(lines) + "\n", encoding="utf-8")
         pd = self.start("pd", "-nogui", "-noaudio", "-noprefs", self.folder / "wind.pd")
         sent, compared = self.sent()
@@ -154,10 +156,10 @@ class Clips(unittest.TestCase):
         self.start_daemon(f'[mqtt]\nhost = "127.0.0.1"\nport = {port}\ntopic = "yuragi"\n')
         device = json.loads(reader.wait_for(r"homeassistant/device/\S+/config (.*)\n")[1])
         # Home Assistant names an entity by its device and its own name.
-        announced = {component["platform"] + "." + re.sub("[^a-z0-9]+", "_", f"{device['dev']['name']} {component['name']}".lower())
-                     for component in device["cmps"].values()}
+        names = [(component["platform"], f"{device['dev']['name']} {component['name']}") for component in device["cmps"].values()]
+        announced = {platform + "." + re.sub("[^a-z0-9]+", "_", name.lower()) for platform, name in names}
         text = (EXAMPLES / "home_assistant.yaml").read_text(encoding="utf-8")
-        named = set(re.findall(r"\w+\.yuragi_\w+", "\n".join(line.split(" #")[0] for line in text.splitlines() if line[0] != "#")))
+        named = set(re.findall(r"\w+\.yuragi_\w+", re.sub("#.*", "", text)))
         self.assertGreaterEqual(len(named), 2)
         self.assertEqual(named - announced, set())
         for automation in yaml.safe_load(text)["automation"]:

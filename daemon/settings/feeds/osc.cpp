@@ -179,7 +179,7 @@ const Fields<OscCue>& osc_cue_fields() {
         .max = kDay_s,
         .help = "shortest time between two messages of this cue"},
        &OscCue::again_after_s},
-      {{.name = "address", .default_value = std::string("/cue/go"), .help = "the receiver's address: /cue/gust/go"},
+      {{.name = "address", .default_value = std::string("/cue/go"), .help = "the receiver's address: /cue/12/start"},
        &OscCue::address,
        checked_path},
   };
