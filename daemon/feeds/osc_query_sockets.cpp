@@ -25,7 +25,6 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
-using websocket::close_code;
 
 /// A message and its address's place in the list.
 using Message = std::shared_ptr<const std::vector<std::uint8_t>>;

@@ -29,7 +29,7 @@ Address serve() {
   moment.sensors.resize(1);
   moment.names = std::make_shared<const daemon::values::Names>(daemon::values::Names{.sensors = {"roof"}});
   feed->send(moment);
-  const Address address = parse_address(feed->status().target).value();
+  Address address = parse_address(feed->status().target).value();
   std::thread([moment]() mutable {
     for (int tick = 0;; ++tick) {
       moment.time_s = tick * 0.001;

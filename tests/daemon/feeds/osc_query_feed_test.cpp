@@ -2,11 +2,14 @@
 // a test waits for answers.
 #include "daemon/feeds/osc_query_feed.hpp"
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,6 +26,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/feeds/osc_addresses.hpp"
 #include "drivers/bus/osc_message.hpp"
 #include "engine/base/address.hpp"
 
@@ -47,8 +51,8 @@ std::shared_ptr<const values::Names> names_of(std::vector<std::string> places) {
 /// A feed, and the thread that sends it moments: a tick each millisecond.
 class Running {
  public:
-  explicit Running(settings::feeds::OscQuery config)
-      : feed_(make_osc_query_feed(std::move(config), {})), thread_([this] { run(); }) {}
+  explicit Running(const settings::feeds::OscQuery& config)
+      : feed_(make_osc_query_feed(config, {})), thread_([this] { run(); }) {}
   ~Running() {
     is_ending_ = true;
     thread_.join();
