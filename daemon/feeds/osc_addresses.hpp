@@ -17,7 +17,7 @@ enum class OscPace : std::uint8_t { kEachTick, kTenTimesASecond, kOnChange };
 
 /// A number of a message: its unit (empty: none) and its range, for programs that draw a slider.
 struct OscNumber {
-  std::string_view unit;
+  std::string_view unit = {};
   double min = 0.0, max = 1.0;
 };
 
@@ -26,14 +26,14 @@ using OscArguments = std::variant<std::vector<float>, std::string>;
 
 /// An address of the daemon's OSC namespace, and how its value is read.
 struct OscAddress {
-  std::string_view part;  ///< one of settings::feeds::kOscParts
+  std::string_view part = {};  ///< one of settings::feeds::kOscParts
   OscPace pace = OscPace::kEachTick;
-  std::string path;                     ///< "/place/door/gust_norm"
-  std::string help;                     ///< what the value is
-  std::vector<OscNumber> numbers;       ///< empty: it is a text
-  std::vector<std::string_view> texts;  ///< all that a text can be
+  std::string path = {};                     ///< "/place/door/gust_norm"
+  std::string help = {};                     ///< what the value is
+  std::vector<OscNumber> numbers = {};       ///< empty: it is a text
+  std::vector<std::string_view> texts = {};  ///< all that a text can be
   /// The value of a moment; nullopt: there is none.
-  std::function<std::optional<OscArguments>(const values::Moment& moment, values::Wind wind)> read;
+  std::function<std::optional<OscArguments>(const values::Moment& moment, values::Wind wind)> read = {};
 
   /// The message with the value; nullopt: there is none.
   std::optional<std::vector<std::uint8_t>> message(const values::Moment& moment, values::Wind wind,
