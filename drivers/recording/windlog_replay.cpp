@@ -144,9 +144,8 @@ class WindlogReplay final : public sensor::Sensor, public Player {
     }
     for (const PlayerOrder& order : orders) {
       const auto done = carry_out(order, now);
-      const std::lock_guard lock(mutex_);
-      report_.refusal = done ? std::string{} : done.error().message;
-      ++report_.orders_done;
+      refusal_ = done ? std::string{} : done.error().message;
+      ++orders_done_;
     }
   }
 
@@ -186,8 +185,11 @@ class WindlogReplay final : public sensor::Sensor, public Player {
     }
   }
 
+  /// Orders together with the position that they have led to: who waits for an order reads that.
   void publish_report(MonoTime now, std::string failure) {
     const std::lock_guard lock(mutex_);
+    report_.orders_done = orders_done_;
+    report_.refusal = refusal_;
     report_.failure = std::move(failure);
     report_.position.reset();
     if (player_) report_.position = player_->position(now);
@@ -201,6 +203,8 @@ class WindlogReplay final : public sensor::Sensor, public Player {
   std::optional<windlog::Player> player_;
   Nanoseconds back_off_{0};
   std::optional<Doing> reported_;
+  std::uint64_t orders_done_ = 0;
+  std::string refusal_;  ///< of the last order
 
   mutable std::mutex mutex_;  // for the members below; seldom locked, and never by the animation
   std::vector<PlayerOrder> waiting_;
