@@ -16,9 +16,9 @@ constexpr const char* kWhatToDo = "install and start avahi-daemon and avahi-util
 
 }  // namespace
 
-Announcement::Announcement(const std::string& name, const AnnouncedService& service)
-    : setup_{.command = {"avahi-publish", "-s", name, service.type, std::to_string(service.port)}},
-      waits_(kFirstWait, kLongestWait, service.port) {}
+Announcement::Announcement(const std::string& name, const std::string& type, std::uint16_t port)
+    : setup_{.command = {"avahi-publish", "-s", name, type, std::to_string(port)}},
+      waits_(kFirstWait, kLongestWait, port) {}
 
 void Announcement::check(MonoTime now) {
   if (!publisher_) {

@@ -10,20 +10,14 @@
 
 namespace yuragi::daemon::feeds {
 
-/// A service that other programs of the network find by its type (S. Cheshire and M. Krochmal, RFC 6763, "DNS-Based
-/// Service Discovery", 2013).
-struct AnnouncedService {
-  std::string type = {};  ///< "_oscjson._tcp"
-  std::uint16_t port = 0;
-  friend bool operator==(const AnnouncedService&, const AnnouncedService&) = default;
-};
-
-/// Announces a service as long as it exists, by Avahi: avahi-publish runs as a child, which is started again if it
-/// ends. Thread-safe: no.
+/// Announces a service as long as it exists, so that other programs of the network find it by its type (S. Cheshire and
+/// M. Krochmal, RFC 6763, "DNS-Based Service Discovery", 2013). By Avahi: avahi-publish runs as a child, which is
+/// started again if it ends. Thread-safe: no.
 class Announcement {
  public:
-  /// `name`: for a person who chooses it from a list; Avahi adds a number if another machine has it.
-  Announcement(const std::string& name, const AnnouncedService& service);
+  /// `name`: for a person who chooses it from a list; Avahi adds a number if another machine has it. `type`:
+  /// "_oscjson._tcp".
+  Announcement(const std::string& name, const std::string& type, std::uint16_t port);
 
   /// Starts it if it does not run and an attempt is due. Does not wait.
   void check(MonoTime now);

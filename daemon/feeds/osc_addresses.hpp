@@ -14,6 +14,7 @@ namespace yuragi::daemon::feeds {
 
 /// How often a value is worth sending.
 enum class OscPace : std::uint8_t { kEachTick, kTenTimesASecond, kOnChange };
+inline constexpr double kOscTenth_s = 0.1;  ///< of kTenTimesASecond
 
 /// A number of a message: its unit (empty: none) and its range, for programs that draw a slider.
 struct OscNumber {

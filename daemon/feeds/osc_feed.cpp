@@ -28,7 +28,6 @@ using Message = std::vector<std::uint8_t>;
 
 constexpr std::size_t kMaxDatagram = 1400;
 constexpr std::size_t kBundleHead = 16, kElementHead = 4;
-constexpr double kTenth_s = 0.1;
 /// What is sent when it changes also comes at this interval, for a receiver that begins later.
 constexpr double kUnchangedEvery_s = 1.0;
 
@@ -139,7 +138,7 @@ class OscFeed final : public Feed {
   std::vector<Mapping> maps_;
   std::vector<CueTrigger> cues_;
   std::optional<Interval> ticks_;  ///< nullopt: each tick
-  Interval tenths_{kTenth_s}, unchanged_{kUnchangedEvery_s};
+  Interval tenths_{kOscTenth_s}, unchanged_{kUnchangedEvery_s};
   std::optional<double> mapped_s_;
   std::shared_ptr<const values::Names> names_;
   std::vector<OscAddress> addresses_;

@@ -86,18 +86,18 @@ json node_at(const std::string& path, std::span<const OscAddress> addresses, con
 
 }  // namespace
 
-OscQueryAnswer osc_query_answer(std::string_view path, std::string_view query, const std::string& name,
+http::Response osc_query_answer(std::string_view path, std::string_view query, const std::string& name,
                                 std::span<const OscAddress> addresses, const values::Moment& moment,
                                 values::Wind wind) {
-  if (query == "HOST_INFO") return {.json = json_text(host_info(name))};
+  if (query == "HOST_INFO") return {.body = json_text(host_info(name))};
   const bool is_root = path.empty() || path == "/";
   json node = node_at(is_root ? std::string() : std::string(path), addresses, moment, wind);
   if (node.is_null()) return {.status = 404};
-  if (query.empty()) return {.json = json_text(node)};
+  if (query.empty()) return {.body = json_text(node)};
   if (std::ranges::count(kAttributes, query) == 0) return {.status = 400};
   const auto attribute = node.find(query);
   if (attribute == node.end()) return {.status = 204};
-  return {.json = json_text(json{{std::string(query), *attribute}})};
+  return {.body = json_text(json{{std::string(query), *attribute}})};
 }
 
 }  // namespace yuragi::daemon::feeds

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/host_name.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -19,6 +18,7 @@
 #include "daemon/feeds/osc_query_answer.hpp"
 #include "daemon/feeds/osc_query_sockets.hpp"
 #include "daemon/http/server.hpp"
+#include "drivers/bus/sender_filter.hpp"
 #include "engine/base/address.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/known_host.hpp"
@@ -39,10 +39,8 @@ std::string host_name() {
 std::uint16_t port_for_others(const std::string& listen) {
   const auto address = parse_address(listen.starts_with(':') ? "0.0.0.0" + listen : listen);
   if (!address) return 0;
-  boost::system::error_code is_a_name;
-  const auto ip = boost::asio::ip::make_address(address->host, is_a_name);
-  const bool is_here = is_a_name ? address->host == "localhost" : ip.is_loopback();
-  return is_here ? std::uint16_t{0} : address->port;
+  const auto is_here = drivers::bus::is_loopback(address->host);
+  return address->host == "localhost" || (is_here && *is_here) ? std::uint16_t{0} : address->port;
 }
 
 class OscQueryFeed final : public Feed {
@@ -88,7 +86,7 @@ class OscQueryFeed final : public Feed {
     if (!page_listen_.empty()) services.push_back({.type = "_http._tcp", .address = page_listen_});
     for (const auto& [type, address] : services) {
       if (const std::uint16_t port = port_for_others(address); port != 0)
-        announcements_.emplace_back(config_.name, AnnouncedService{.type = type, .port = port});
+        announcements_.emplace_back(config_.name, type, port);
     }
   }
 
@@ -134,9 +132,7 @@ class OscQueryFeed final : public Feed {
     }
     if (request.method != "GET" && request.method != "HEAD")
       return {.status = 405, .content_type = kText, .body = "nothing can be set here\n", .fields = {{"Allow", "GET"}}};
-    OscQueryAnswer answered =
-        osc_query_answer(request.path, request.query, config_.name, *addresses_, *moment_, config_.wind);
-    return {.status = answered.status, .body = std::move(answered.json)};
+    return osc_query_answer(request.path, request.query, config_.name, *addresses_, *moment_, config_.wind);
   }
 
   settings::feeds::OscQuery config_;

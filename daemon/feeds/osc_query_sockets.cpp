@@ -36,7 +36,6 @@ constexpr int kMaxCommands = 64;
 constexpr int kSendBufferBytes = 32 << 10;  ///< what waits in it is old
 constexpr auto kStuckAfter = std::chrono::seconds(5);
 constexpr auto kSilentAfter = std::chrono::seconds(30);
-constexpr double kTenth_s = 0.1;
 
 struct Command {
   bool listens = false;  ///< false: it ignores
@@ -57,7 +56,7 @@ std::optional<Command> command_in(const std::string& text) {
 struct OscQuerySockets::Shared {
   Addresses addresses = std::make_shared<const std::vector<OscAddress>>();
   std::vector<std::shared_ptr<Client>> clients;
-  Interval tenths{kTenth_s};
+  Interval tenths{kOscTenth_s};
   std::uint64_t messages = 0, bytes = 0;
   std::optional<MonoTime> last_sent;
   MonoTime now{};  ///< of the last tick

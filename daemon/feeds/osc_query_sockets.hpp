@@ -31,7 +31,7 @@ class OscQuerySockets {
   /// Takes over a connection that has asked for a WebSocket.
   void open(http::Upgrade& upgrade);
 
-  /// Other addresses from now on: clients are told so, and go on listening to those that stay.
+  /// Replaces the addresses: clients get PATH_CHANGED, and still listen to those that stay.
   void set_addresses(std::shared_ptr<const std::vector<OscAddress>> addresses);
 
   /// Sends what has changed, sensors' values ten times a second. Call it once a tick.

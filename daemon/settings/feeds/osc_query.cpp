@@ -3,7 +3,6 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 
-#include "daemon/settings/feeds/span.hpp"
 #include "engine/base/address.hpp"
 
 namespace yuragi::daemon::settings::feeds {

@@ -28,12 +28,12 @@ values::Moment moment() {
   return made;
 }
 
-OscQueryAnswer ask(std::string_view path, std::string_view query = "", values::Wind wind = values::Wind::kShaped) {
+http::Response ask(std::string_view path, std::string_view query = "", values::Wind wind = values::Wind::kShaped) {
   return osc_query_answer(path, query, "hall", osc_addresses_of(kNames), moment(), wind);
 }
 
 json node(std::string_view path) {
-  return json::parse(ask(path).json);
+  return json::parse(ask(path).body);
 }
 
 TEST(OscQueryAnswer, TheRootHasEveryAddressWhereItsPathSays) {
@@ -72,13 +72,13 @@ TEST(OscQueryAnswer, ANodeHasItsValueItsRangeAndItsUnit) {
 }
 
 TEST(OscQueryAnswer, TheRealWindIsReadIfItIsWanted) {
-  EXPECT_EQ(json::parse(ask("/wind/speed", "VALUE", values::Wind::kReal).json), (json{{"VALUE", {12.0}}}));
+  EXPECT_EQ(json::parse(ask("/wind/speed", "VALUE", values::Wind::kReal).body), (json{{"VALUE", {12.0}}}));
 }
 
 TEST(OscQueryAnswer, WhatASensorDoesNotSendHasNoValue) {
   EXPECT_FALSE(node("/sensor/roof_mast/direction").contains("VALUE"));
   EXPECT_EQ(ask("/sensor/roof_mast/direction", "VALUE").status, 204U);
-  EXPECT_EQ(json::parse(ask("/sensor/roof_mast/speed", "VALUE").json), (json{{"VALUE", {7.5}}}));
+  EXPECT_EQ(json::parse(ask("/sensor/roof_mast/speed", "VALUE").body), (json{{"VALUE", {7.5}}}));
 }
 
 TEST(OscQueryAnswer, RefusesWithTheProposalsCodes) {
@@ -88,11 +88,11 @@ TEST(OscQueryAnswer, RefusesWithTheProposalsCodes) {
   EXPECT_EQ(ask("/wind/").status, 404U);
   EXPECT_EQ(ask("/wind", "COLOUR").status, 400U);
   EXPECT_EQ(ask("/place", "VALUE").status, 204U);
-  EXPECT_EQ(json::parse(ask("/place", "ACCESS").json), (json{{"ACCESS", 0}}));
+  EXPECT_EQ(json::parse(ask("/place", "ACCESS").body), (json{{"ACCESS", 0}}));
 }
 
 TEST(OscQueryAnswer, TheHostSaysWhatItCanDoAndTakesNothing) {
-  const json host = json::parse(ask("/", "HOST_INFO").json);
+  const json host = json::parse(ask("/", "HOST_INFO").body);
   EXPECT_EQ(host["NAME"], "hall");
   for (const char* const extension : {"ACCESS", "VALUE", "RANGE", "DESCRIPTION", "CLIPMODE", "UNIT", "LISTEN"})
     EXPECT_EQ(host["EXTENSIONS"][extension], true) << extension;
