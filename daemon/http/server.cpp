@@ -50,14 +50,21 @@ std::optional<Response> refusal_of(const error_code& error) {
   return std::nullopt;
 }
 
+constexpr const char* kRetryAfter_s = "10";
+
 /// One client: request after request. Kept alive by what it waits for.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, stream::Peer client, const Limits& limits, const Server::Handler& handler)
+  /// Why `client` gets no place of Limits::clients; nullopt if it gets one.
+  using Admission = std::function<std::optional<std::string>(const stream::Peer& client)>;
+
+  Connection(tcp::socket socket, stream::Peer client, const Limits& limits, const Server::Handler& handler,
+             Admission admission)
       : stream_(std::move(socket)),
         client_(std::move(client)),
         limits_(limits),
         handler_(handler),
+        admission_(std::move(admission)),
         buffer_(limits.header_bytes + limits.body_bytes) {}
 
   void read() {
@@ -76,6 +83,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
   bool has_ended() const { return has_ended_; }
   const stream::Peer& client() const { return client_; }
+  /// Returns true if it has a place of Limits::clients; before that it is one of Limits::newcomers.
+  bool has_place() const { return has_place_; }
 
  private:
   /// Does what an event is about. An exception ends this connection, and no other.
@@ -114,6 +123,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
         .is_websocket = parser_->upgrade() && beast::iequals(message[beast_http::field::upgrade], "websocket"),
         .client = client_};
+    if (!request.is_websocket && !has_place_) {
+      if (const auto why = admission_(client_)) {
+        is_last_ = true;
+        Response refusal = plain(503, *why);
+        refusal.fields.emplace_back("Retry-After", kRetryAfter_s);
+        return write(std::move(refusal));
+      }
+      has_place_ = true;
+    }
     ask(request);
   }
 
@@ -176,9 +194,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   stream::Peer client_;
   const Limits& limits_;
   const Server::Handler& handler_;
+  Admission admission_;
   beast::flat_buffer buffer_;
   std::optional<beast_http::request_parser<beast_http::string_body>> parser_;
   beast_http::response<beast_http::string_body> message_;
+  bool has_place_ = false;
   bool is_head_ = false;
   bool is_last_ = false;  ///< the connection is closed after this reply
   bool has_ended_ = false;
@@ -234,21 +254,30 @@ class Server::Listener : public std::enable_shared_from_this<Listener> {
     stream::keep_alive(socket);
     const asio::ip::address address = stream::unmapped(endpoint.address());
     stream::Peer client{.address = address.to_string(), .is_local = address.is_loopback()};
-    std::vector<stream::Peer> present;
-    for (const auto& connection : connections_) present.push_back(connection->client());
-    if (const auto why = stream::admission_refusal(limits_.clients, present, client)) {
+    if (const auto why = stream::admission_refusal(limits_.newcomers, present(false), client)) {
       return turn_away(std::move(socket), *why);
     }
-    connections_.push_back(std::make_shared<Connection>(std::move(socket), std::move(client), limits_, handler_));
+    connections_.push_back(std::make_shared<Connection>(
+        std::move(socket), std::move(client), limits_, handler_, [this](const stream::Peer& asking) {
+          return stream::admission_refusal(limits_.clients, present(true), asking);
+        }));
     connections_.back()->read();
+  }
+
+  std::vector<stream::Peer> present(bool with_place) const {
+    std::vector<stream::Peer> peers;
+    for (const auto& connection : connections_) {
+      if (!connection->has_ended() && connection->has_place() == with_place) peers.push_back(connection->client());
+    }
+    return peers;
   }
 
   /// In one write that fits into an empty socket buffer.
   static void turn_away(tcp::socket socket, const std::string& why) {
     const std::string answer = fmt::format(
-        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain; charset=utf-8\r\nRetry-After: 10\r\n"
+        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain; charset=utf-8\r\nRetry-After: {}\r\n"
         "Connection: close\r\nContent-Length: {}\r\n\r\n{}\n",
-        why.size() + 1, why);
+        kRetryAfter_s, why.size() + 1, why);
     error_code ignored;
     socket.non_blocking(true, ignored);
     socket.write_some(asio::buffer(answer), ignored);

@@ -41,16 +41,20 @@ struct Received {
   std::string bytes;
 };
 
+tcp::endpoint endpoint_of(const Server& server) {
+  const Address address = parse_address(server.local_endpoint()).value();
+  return {boost::asio::ip::make_address(address.host), address.port};
+}
+
 /// A page's WebSocket.
 class Socket {
  public:
   explicit Socket(const Server& server, std::vector<std::pair<std::string, std::string>> fields = {},
                   int receive_buffer_bytes = 0) {
-    const Address address = parse_address(server.local_endpoint()).value();
     tcp::socket& socket = stream_.next_layer();
     socket.open(tcp::v4());
     if (receive_buffer_bytes > 0) socket.set_option(tcp::socket::receive_buffer_size(receive_buffer_bytes));
-    socket.connect(tcp::endpoint(boost::asio::ip::make_address(address.host), address.port));
+    socket.connect(endpoint_of(server));
     stream_.set_option(websocket::stream_base::decorator([fields](websocket::request_type& request) {
       for (const auto& [name, value] : fields) request.set(name, value);
     }));
@@ -319,6 +323,14 @@ TEST_F(SocketsTest, PlacesAreTheirOwnAndBounded_AndComeBack) {
        status != 101U && std::chrono::steady_clock::now() < hangs;)
     status = Socket(*server_).status();
   EXPECT_EQ(status, 101U);
+}
+
+TEST_F(SocketsTest, PagesThatOpenAtOnceTakeNoPlacesOfHttp) {
+  start({.clients = {.max_clients = 1}, .sockets = {.places = {.max_clients = 3}}});
+  boost::asio::io_context io;
+  std::vector<tcp::socket> without_a_request;
+  for (int i = 0; i < 20; ++i) without_a_request.emplace_back(io).connect(endpoint_of(*server_));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(Socket(*server_).status(), 101U);
 }
 
 TEST_F(SocketsTest, WhoAnswersNoPingHasToGo) {

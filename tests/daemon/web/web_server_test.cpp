@@ -478,7 +478,7 @@ TEST_F(HttpServerTest, PlacesAreBounded_AndComeBack) {
   auto two = std::make_unique<Client>(endpoint_);
   EXPECT_THAT(one->get("/"), StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(two->get("/"), StartsWith("HTTP/1.1 200"));
-  EXPECT_THAT(Client(endpoint_).answer(), StartsWith("HTTP/1.1 503"));
+  EXPECT_THAT(Client(endpoint_).get("/"), AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("Retry-After: 10")));
   one.reset();
   std::string answer;
   for (const auto hangs = std::chrono::steady_clock::now() + 60s;
@@ -491,6 +491,18 @@ TEST_F(HttpServerTest, PlacesAreBounded_AndComeBack) {
     }
   }
   EXPECT_THAT(answer, StartsWith("HTTP/1.1 200"));
+}
+TEST_F(HttpServerTest, WhoAsksForNothingTakesNoPlaceOfThoseWhoAsk) {
+  begin({.clients = {.max_clients = 1}, .newcomers = {.max_clients = 3}});
+  const Client silent(endpoint_);
+  const Client silent_too(endpoint_);
+  EXPECT_THAT(Client(endpoint_).get("/"), StartsWith("HTTP/1.1 200"));
+}
+TEST_F(HttpServerTest, ThoseWhoAskForNothingAreBounded) {
+  begin({.newcomers = {.max_clients = 2}});
+  const Client silent(endpoint_);
+  const Client silent_too(endpoint_);
+  EXPECT_THAT(Client(endpoint_).answer(), StartsWith("HTTP/1.1 503"));
 }
 
 }  // namespace
