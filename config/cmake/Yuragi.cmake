@@ -57,14 +57,14 @@ endif()
 # those have the preset's optimization in which tests compute for long, all others -O0: their compilation takes longer. With sanitizers
 # only the engine has it, and what tests run longest in -O1.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
-                     daemon/tools/csv viewer)
+                     daemon/tools/csv daemon/tools/logs viewer)
 set(YURAGI_WARM_ROOMS "[^/]+")
 if(YURAGI_COLD_UNOPTIMIZED)
   set(YURAGI_WARM_ROOMS "")
   set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog viewer)
 endif()
 if(YURAGI_SANITIZE)
-  set(YURAGI_WARM_ROOMS drivers/decode drivers/windlog daemon/tools/csv viewer)
+  set(YURAGI_WARM_ROOMS drivers/decode drivers/windlog daemon/tools/csv daemon/tools/logs viewer)
   set(YURAGI_HOT_ROOMS engine)
 endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)

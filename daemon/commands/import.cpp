@@ -17,7 +17,8 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
-#include "daemon/tools/csv/line_log_import.hpp"
+#include "daemon/tools/csv/csv_preview.hpp"
+#include "daemon/tools/logs/log_import.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/count_text.hpp"
@@ -46,7 +47,11 @@ constexpr const char* kImportFooter =
     "  the order        a file with its newest row first is read from its end\n"
     "A log of messages (NMEA 0183, Gill, FT, UMB, or \"speed=4.2 direction=270\"), one a line, is dated by the times\n"
     "that a logger wrote before them, by its RMC, ZDA and GLL, or by --start and --interval.\n"
-    "Rows that are not readings, repeat the one before, or go back in time, are left out and counted.\n"
+    "Rows that are not readings, repeat the one before, or go back in time, are left out and counted by reason.\n"
+    "Before the recording is written, first and last time, interval, gaps, mean, strongest and directions are shown; "
+    "on\n"
+    "a terminal you are asked. What is hardly a wind (an interval below 10 ms, a mean above 40 m/s, changes above\n"
+    "10 m/s in 30 % of the steps) is refused without --force.\n"
     "\n"
     "Examples:\n"
     "  yuragi import mast.csv -o mast.windlog\n"
@@ -76,6 +81,8 @@ struct ImportOptions {
   std::string delimiter;
   std::string comment = "#";
   bool force = false;
+  bool is_dry_run = false;
+  bool is_confirmed = false;
 };
 
 char delimiter_named(const std::string& text) {
@@ -120,12 +127,9 @@ tools::csv::ImportOptions csv_options(const ImportOptions& options) {
   return csv;
 }
 
-tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools::csv::ImportOptions& csv) {
-  tools::csv::LineLogOptions log;
-  log.time_format = csv.time_format;
-  log.zone = csv.zone;
-  log.sensor = csv.sensor;
-  log.strict = csv.strict;
+tools::logs::LogOptions log_options(const ImportOptions& options, const tools::csv::ImportOptions& csv) {
+  tools::logs::LogOptions log;
+  log.table = csv;
   log.sentence = options.sentence;
   if (options.interval_s > 0.0) log.interval = from_seconds(options.interval_s);
   if (options.start.empty()) return log;
@@ -139,16 +143,19 @@ tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools
 Result<tools::csv::ImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
                                                      const tools::csv::Sinks& sinks) {
   const tools::csv::ImportOptions csv = csv_options(options);
-  const tools::csv::LineLogOptions log = log_options(options, csv);
+  const tools::logs::LogOptions log = log_options(options, csv);
   tools::csv::Input input(in);
+  const auto lines = tools::csv::first_lines(input, options.input);
+  if (!lines) return lines.error();
   Format format = options.format;
   if (format == Format::kAuto) {
-    const auto lines = tools::csv::first_lines(input, options.input);
-    if (!lines) return lines.error();
-    format = tools::csv::looks_like_line_log(*lines) ? Format::kLog : Format::kCsv;
+    format = tools::logs::looks_like_log(*lines, csv) ? Format::kLog : Format::kCsv;
   }
-  return format == Format::kLog ? tools::csv::import_line_log(input, options.input, log, sinks)
-                                : tools::csv::import_csv(input, options.input, csv, sinks);
+  auto report = format == Format::kLog ? tools::logs::import_log(input, options.input, log, sinks)
+                                       : tools::csv::import_csv(input, options.input, csv, sinks);
+  if (report && input.encoding() != tools::csv::Encoding::kUtf8)
+    report->notes.insert(report->notes.begin(), fmt::format("text in {}", name_of(input.encoding())));
+  return report;
 }
 
 /// Writes the imported readings to one session of a new recording.
@@ -210,22 +217,38 @@ class Target {
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };
 
-void print_report(const ImportOptions& options, const tools::csv::ImportReport& report) {
+void print_report(const tools::csv::ImportReport& report, const tools::csv::Preview& preview) {
   for (const std::string& line : report.columns) fmt::print("  {}\n", line);
   for (const std::string& line : report.notes) fmt::print("  {}\n", line);
-  for (const std::string& line : report.first_refusals) fmt::print(stderr, "left out: {}\n", line);
-  if (report.refused() > report.first_refusals.size()) {
-    fmt::print(stderr, "left out: {} more\n", report.refused() - report.first_refusals.size());
-  }
-  fmt::print("{}: {} of {}, {} left out\n", options.output, count_text(report.taken, "reading"),
-             count_text(report.rows, "row"), report.refused());
+  for (const std::string& line : preview.describe()) fmt::print("  {}\n", line);
+  for (const auto& [reason, count] : report.refusals)
+    fmt::print(stderr, "left out: {}: {}\n", count_text(count, "row"), reason);
+  for (const std::string& line : report.first_refusals) fmt::print(stderr, "  {}\n", line);
+  if (report.refused() > report.first_refusals.size())
+    fmt::print(stderr, "  and {} more\n", report.refused() - report.first_refusals.size());
+}
+
+void print_count(const std::string& output, const tools::csv::ImportReport& report) {
+  fmt::print("{}: {} of {}, {} left out\n", output, count_text(report.taken, "reading"), count_text(report.rows, "row"),
+             report.refused());
   if (report.quantities > 0)
     fmt::print("{} with other quantities besides the wind (yuragi export --quantities)\n",
                count_text(report.quantities, "row"));
 }
 
-void run_import(const ImportOptions& options) {
-  csv_options(options);  // a mistake in them is reported before anything is opened
+/// Asks a person at a terminal; true if there is none.
+bool is_wanted(const ImportOptions& options) {
+  if (options.is_confirmed || isatty(STDIN_FILENO) == 0 || isatty(STDOUT_FILENO) == 0) return true;
+  fmt::print("Write {}? [Y/n] ", options.output);
+  std::fflush(stdout);
+  std::string answer;
+  if (!std::getline(std::cin, answer)) return false;
+  return answer.empty() || answer.starts_with('y') || answer.starts_with('Y');
+}
+
+/// Reads the input into `sinks` and a preview, and reports both. Throws if there is nothing to record, or if it is
+/// implausible and not forced.
+tools::csv::ImportReport read_input(const ImportOptions& options, const tools::csv::Sinks& sinks) {
   std::ifstream file;
   const bool is_standard_input = options.input == "-";
   if (!is_standard_input) {
@@ -233,24 +256,46 @@ void run_import(const ImportOptions& options) {
     file.open(options.input, std::ios::binary);
     if (!file) throw ExitError(kExitNoInput, options.input + ": cannot be read; does it exist?");
   }
+  tools::csv::Preview preview;
+  const auto report = import_any(options, is_standard_input ? std::cin : file,
+                                 {.reading =
+                                      [&](std::string_view sensor, const wind::Reading& reading) {
+                                        preview.take(sensor, reading);
+                                        if (sinks.reading) sinks.reading(sensor, reading);
+                                      },
+                                  .quantities = sinks.quantities});
+  if (!report) throw ExitError(kExitDataError, report.error().message);
+  if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
+  print_report(*report, preview);
+  if (report->taken == 0) throw ExitError(kExitDataError, options.input + ": no row is a reading; nothing was written");
+  const std::vector<std::string> doubts = report->is_own_export ? std::vector<std::string>{} : preview.implausible();
+  for (const std::string& doubt : doubts) fmt::print(stderr, "implausible: {}\n", doubt);
+  if (!doubts.empty() && !options.force)
+    throw ExitError(kExitDataError,
+                    options.input + ": these are hardly winds; nothing was written (--force writes it)");
+  return *report;
+}
+
+void run_import(const ImportOptions& options) {
+  csv_options(options);  // a mistake in them is reported before anything is opened
+  if (options.is_dry_run) return print_count("nothing was written", read_input(options, {}));
+  if (options.output.empty()) throw ExitError(kExitUsage, "--output: give the recording to write, or --dry-run");
 
   const auto lock = lock_recording(options.output);
   platform::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
-  const auto report = import_any(
-      options, is_standard_input ? std::cin : file,
+  const auto report = read_input(
+      options,
       {.reading = [&target](std::string_view sensor, const wind::Reading& reading) { target.take(sensor, reading); },
        .quantities = [&target](std::string_view,
                                const wind::StationQuantities& quantities) { target.take(quantities); }});
-  if (!report) throw ExitError(kExitDataError, report.error().message);
-  if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
   target.close();
-  if (report->taken == 0) {
-    print_report(options, *report);
-    throw ExitError(kExitDataError, options.input + ": no row is a reading; nothing was written");
+  if (!is_wanted(options)) {
+    fmt::print("nothing was written\n");
+    return;
   }
   output.commit().value();
-  print_report(options, *report);
+  print_count(options.output, report);
 }
 
 void add_import(CLI::App& app) {
@@ -259,8 +304,10 @@ void add_import(CLI::App& app) {
       app.add_subcommand("import", "Convert a CSV file, or a log of an anemometer's messages, to a recording");
   command->footer(kImportFooter);
   command->add_option("file", options->input, "the CSV file or log; - is standard input")->required();
-  command->add_option("-o,--output", options->output, "the recording to write (.windlog)")->required();
-  command->add_flag("--force", options->force, "overwrite it");
+  command->add_option("-o,--output", options->output, "the recording to write (.windlog)");
+  command->add_flag("--force", options->force, "overwrite it, and write what is implausible");
+  command->add_flag("--dry-run", options->is_dry_run, "show what would be written, and write nothing");
+  command->add_flag("-y,--yes", options->is_confirmed, "do not ask on a terminal before it is written");
   static const std::map<std::string, Format> kFormats = {
       {"auto", Format::kAuto}, {"csv", Format::kCsv}, {"log", Format::kLog}};
   command->add_option("--format", options->format, "what the file is; auto: by its first lines")

@@ -22,6 +22,7 @@ inline constexpr SpeedUnit kKnotUnit{"kn", kMetresPerSecondPerKnot};
 inline constexpr SpeedUnit kMilesPerHourUnit{"mph", kMetresPerSecondPerMph};
 inline constexpr SpeedUnit kFeetPerSecondUnit{"ft/s", 0.3048};
 inline constexpr SpeedUnit kYardsPerSecondUnit{"yd/s", 0.9144};
+inline constexpr SpeedUnit kDecimetresPerSecondUnit{"dm/s", 0.1};
 inline constexpr SpeedUnit kCentimetresPerSecondUnit{"cm/s", 0.01};
 
 struct SpeedWord {
@@ -38,6 +39,10 @@ inline constexpr std::array kSpeedWords = {
     SpeedWord{"m per s", kMetresPerSecondUnit},
     SpeedWord{"meter/second", kMetresPerSecondUnit},
     SpeedWord{"meters/second", kMetresPerSecondUnit},
+    SpeedWord{"metre/second", kMetresPerSecondUnit},
+    SpeedWord{"metres/second", kMetresPerSecondUnit},
+    SpeedWord{"meter/sec", kMetresPerSecondUnit},
+    SpeedWord{"meters/sec", kMetresPerSecondUnit},
     SpeedWord{"meters per second", kMetresPerSecondUnit},
     SpeedWord{"metres per second", kMetresPerSecondUnit},
     SpeedWord{"km/h", kKilometresPerHourUnit},
@@ -46,19 +51,32 @@ inline constexpr std::array kSpeedWords = {
     SpeedWord{"kph", kKilometresPerHourUnit},
     SpeedWord{"kmph", kKilometresPerHourUnit},
     SpeedWord{"km/hr", kKilometresPerHourUnit},
+    SpeedWord{"kilometer/hour", kKilometresPerHourUnit},
+    SpeedWord{"kilometers/hour", kKilometresPerHourUnit},
+    SpeedWord{"kilometres/hour", kKilometresPerHourUnit},
+    SpeedWord{"kilometers per hour", kKilometresPerHourUnit},
+    SpeedWord{"kilometres per hour", kKilometresPerHourUnit},
     SpeedWord{"kn", kKnotUnit},
     SpeedWord{"kt", kKnotUnit},
     SpeedWord{"kts", kKnotUnit},
     SpeedWord{"knt", kKnotUnit},
+    SpeedWord{"knts", kKnotUnit},
     SpeedWord{"knot", kKnotUnit},
     SpeedWord{"knots", kKnotUnit},
     SpeedWord{"mph", kMilesPerHourUnit},
     SpeedWord{"mi/h", kMilesPerHourUnit},
+    SpeedWord{"mi/hr", kMilesPerHourUnit},
+    SpeedWord{"mile/hour", kMilesPerHourUnit},
     SpeedWord{"miles/hour", kMilesPerHourUnit},
     SpeedWord{"miles per hour", kMilesPerHourUnit},
     SpeedWord{"ft/s", kFeetPerSecondUnit},
     SpeedWord{"fps", kFeetPerSecondUnit},
+    SpeedWord{"ft/sec", kFeetPerSecondUnit},
+    SpeedWord{"feet/sec", kFeetPerSecondUnit},
+    SpeedWord{"feet/second", kFeetPerSecondUnit},
+    SpeedWord{"feet per second", kFeetPerSecondUnit},
     SpeedWord{"yd/s", kYardsPerSecondUnit},
+    SpeedWord{"dm/s", kDecimetresPerSecondUnit},
     SpeedWord{"cm/s", kCentimetresPerSecondUnit},
 };
 

@@ -80,26 +80,49 @@ class ColumnChoice {
     return checked();
   }
 
+  Result<Columns, Failure> choose_of_keys() {
+    for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
+      if (const auto key = find(given_[role])) take(static_cast<Role>(role), *key);
+    }
+    if (is_given(Role::kSpeed) && !columns_.at(Role::kSpeed)) return Failure{"no key " + given_of(Role::kSpeed)};
+    choose_time();
+    choose_wind();
+    for (const Role role : kQuantityRoles) guess(role);
+    const auto& speed = columns_.at(Role::kSpeed);
+    if (speed && !is_given(Role::kSpeed) && names_[speed->index].stem.size() < 2)
+      return Failure{"the speed has a name of one letter"};
+    return checked_wind();
+  }
+
  private:
+  const std::string& given_of(Role role) const { return given_[static_cast<std::size_t>(role)]; }
   bool is_given(Role role) const { return !given_[static_cast<std::size_t>(role)].empty(); }
 
   Result<void, Failure> take_given() {
     for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
       if (given_[role].empty()) continue;
-      const auto found =
-          std::ranges::find_if(header_, [&](const std::string& name) { return lower(name) == lower(given_[role]); });
-      if (found == header_.end()) {
-        return Failure{"there is no column \"" + given_[role] + "\"; the columns are " + listed(header_)};
-      }
-      take(static_cast<Role>(role), static_cast<std::size_t>(found - header_.begin()));
+      const auto found = find(given_[role]);
+      if (!found) return Failure{"there is no column \"" + given_[role] + "\"; the columns are " + listed(header_)};
+      take(static_cast<Role>(role), *found);
     }
     return {};
   }
 
+  /// The column of a name in capitals or not; nullopt for no name.
+  std::optional<std::size_t> find(const std::string& given) const {
+    if (given.empty()) return std::nullopt;
+    const auto found = std::ranges::find_if(header_, [&](const auto& name) { return lower(name) == lower(given); });
+    if (found == header_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - header_.begin());
+  }
+
   void take(Role role, std::size_t index) {
-    Column column{.name = header_[index], .index = index, .unit = std::nullopt, .unit_source = {}};
     const Name& name = names_[index];
-    column.unit = find_unit(dimension_of(role), joined(name.unit_words));
+    Column column{.name = header_[index],
+                  .index = index,
+                  .unit = find_unit(dimension_of(role), joined(name.unit_words)),
+                  .unit_source = {},
+                  .unknown_unit = name.unknown_unit};
     if (column.unit) column.unit_source = kByName;
     columns_.at(role) = column;
     is_taken_[index] = true;
@@ -121,6 +144,12 @@ class ColumnChoice {
         const Name& name = names_[i];
         const Statistic wanted = role == Role::kGust ? Statistic::kMax : Statistic::kMean;
         if (name.statistic != Statistic::kMean && name.statistic != wanted) continue;
+        // "Wind (deg)" is no speed.
+        const bool is_of_another_dimension =
+            !name.unit_words.empty() && !find_unit(dimension_of(role), joined(name.unit_words));
+        // Of a speed or a direction an unknown unit is asked for; "Temperature (indoor)" is another temperature.
+        const bool is_wind = dimension_of(role) == Dimension::kSpeed || dimension_of(role) == Dimension::kDirection;
+        if (is_of_another_dimension || (!is_wind && !name.unknown_unit.empty())) continue;
         if (name.stem == usual && (!is_unit_needed || !name.unit_words.empty())) {
           take(role, i);
           return true;
@@ -171,29 +200,25 @@ class ColumnChoice {
     }
     if (!columns_.at(Role::kTime) && columns_.at(Role::kDate)) columns_.at(Role::kTime).swap(columns_.at(Role::kDate));
     if (!columns_.at(Role::kTime)) return;
-    if (columns_.at(Role::kDate)) columns_.time_parts.push_back(columns_.at(Role::kDate)->index);
-    columns_.time_parts.push_back(columns_.at(Role::kTime)->index);
-    for (const std::size_t part : columns_.time_parts) read_time_name(header_[part]);
+    if (columns_.at(Role::kDate)) columns_.time_parts.push_back({columns_.at(Role::kDate)->index});
+    columns_.time_parts.push_back({columns_.at(Role::kTime)->index});
+    for (const TimePart& part : columns_.time_parts) read_time_name(header_[part.column]);
   }
 
   void choose_time_by_name() {
     const auto moment = find_time_column(Role::kTime);
     const auto date = find_time_column(Role::kDate);
+    const auto clock = date ? find_clock_beside(*date) : std::nullopt;
+    if (!moment && date && clock) {
+      take(Role::kDate, *date);
+      take(Role::kTime, *clock);
+      return;
+    }
     if (!moment) {
       // The index of a table is written without a name.
       const bool is_index = !header_.empty() && is_any_of(lower(header_[0]), {"", "index", "unnamed: 0"});
       if (is_index && has_date(first_value(0))) take(Role::kTime, 0);
       return;
-    }
-    std::optional<std::size_t> clock;
-    if (date) {
-      // The time of day, in a column beside that of the date.
-      for (const std::string_view usual : {"time", "uhrzeit", "zeit", "heure", "hour", "hh", "clock", "localtime",
-                                           "mst", "est", "cst", "pst", "lst", "timehhmm", "hhmm", "timelst"}) {
-        for (std::size_t i = 0; i < header_.size() && !clock; ++i) {
-          if (i != *date && !is_taken_[i] && time_stems_[i] == usual) clock = i;
-        }
-      }
     }
     const bool is_split =
         date && clock && !has_date(first_value(*clock)) && first_value(*date).find(':') == std::string_view::npos;
@@ -208,8 +233,47 @@ class ColumnChoice {
              : *moment);
   }
 
+  /// The column of the time of day, where that of the date is another.
+  std::optional<std::size_t> find_clock_beside(std::size_t date) const {
+    for (const std::string_view usual : {"time", "uhrzeit", "zeit", "heure", "hour", "hh", "clock", "localtime", "mst",
+                                         "est", "cst", "pst", "lst", "timehhmm", "hhmm", "hrmn", "timelst"}) {
+      for (std::size_t i = 0; i < header_.size(); ++i) {
+        if (i != date && !is_taken_[i] && time_stems_[i] == usual) return i;
+      }
+    }
+    return std::nullopt;
+  }
+
+  void take_time_parts(std::size_t begin, std::size_t count) {
+    take(Role::kTime, begin);
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      is_taken_[i] = true;
+      columns_.time_parts.push_back({i});
+    }
+  }
+
+  /// Year, day of the year, and the time of the day behind them.
+  bool choose_day_of_year() {
+    for (std::size_t begin = 0; begin + 1 < header_.size(); ++begin) {
+      const auto name = [&](std::size_t i) { return joined(words_of(header_[begin + i])); };
+      if (!is_any_of(name(0), {"year", "yyyy", "yr", "jahr"}) ||
+          !is_any_of(name(1), {"doy", "dayofyear", "jday", "julianday", "yday", "ddd"})) {
+        continue;
+      }
+      const bool has_clock = begin + 2 < header_.size() &&
+                             is_any_of(time_stems_[begin + 2], {"hour", "hh", "hr", "hhmm", "hrmn", "time", "mst",
+                                                                "est", "cst", "pst", "lst", "utc", "gmt", "clock"});
+      take_time_parts(begin, has_clock ? 3 : 2);
+      columns_.time_parts[1].form = TimePartForm::kDayOfYear;
+      for (const TimePart& part : columns_.time_parts) read_time_name(header_[part.column]);
+      return true;
+    }
+    return false;
+  }
+
   /// Year, month, day, hour, minute and second in columns side by side.
   bool choose_calendar_columns() {
+    if (choose_day_of_year()) return true;
     constexpr std::size_t kParts = 6;
     static const std::array<std::initializer_list<std::string_view>, kParts> kNames = {
         {{"year", "yyyy", "yy", "yr", "jahr"},
@@ -224,11 +288,7 @@ class ColumnChoice {
              is_any_of(joined(words_of(header_[begin + count])), kNames[count]))
         ++count;
       if (count < 4) continue;
-      take(Role::kTime, begin);
-      for (std::size_t i = begin; i < begin + count; ++i) {
-        is_taken_[i] = true;
-        columns_.time_parts.push_back(i);
-      }
+      take_time_parts(begin, count);
       return true;
     }
     return false;
@@ -269,15 +329,36 @@ class ColumnChoice {
     take(Role::kQuality, index_of("quality"));
   }
 
+  /// A speed that is not named a wind's, beside the places of a GPS.
+  bool is_track() const {
+    const auto& speed = columns_.at(Role::kSpeed);
+    if (!speed || names_[speed->index].stem.find('w') != std::string::npos) return false;
+    const auto has = [this](std::initializer_list<std::string_view> names) {
+      return std::ranges::any_of(names_, [&](const Name& name) { return is_any_of(name.stem, names); });
+    };
+    return has({"lat", "latitude"}) && has({"lon", "lng", "long", "longitude"}) &&
+           has({"course", "cog", "sog", "heading", "track", "ele", "elevation", "altitude", "alt", "hdop", "satellites",
+                "sats", "fix"});
+  }
+
   Result<Columns, Failure> checked() {
     if (columns_.time_parts.empty()) {
       return Failure{"no column looks like a time; the columns are " + listed(header_) +
                      "; name it with --time COLUMN (and --date COLUMN, if the date is in another), or skip lines "
                      "before the header with --skip N"};
     }
+    return checked_wind();
+  }
+
+  Result<Columns, Failure> checked_wind() {
     if (!columns_.at(Role::kSpeed) && (!columns_.at(Role::kU) || !columns_.at(Role::kV))) {
       return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header_) +
                      "; name it with --speed COLUMN, or --u COLUMN --v COLUMN"};
+    }
+    if (!is_given(Role::kSpeed) && is_track()) {
+      return Failure{"the speed in \"" + columns_.at(Role::kSpeed)->name +
+                     "\" is that of a GPS, because places, a course or heights are beside it; if it is the wind's, "
+                     "add --speed"};
     }
     for (const auto& column : columns_.by_role) {
       if (!column || columns_.time_parts.size() > 2) continue;
@@ -301,6 +382,11 @@ class ColumnChoice {
 };
 
 }  // namespace
+
+Result<Columns, Failure> choose_keys(const std::vector<std::string>& keys, const ColumnNames& given,
+                                     const std::vector<std::string>& values) {
+  return ColumnChoice(keys, given, values).choose_of_keys();
+}
 
 Result<Columns, Failure> choose_columns(const std::vector<std::string>& header, const ColumnNames& given,
                                         const std::vector<std::string>& row) {

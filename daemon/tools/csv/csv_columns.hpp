@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,14 +26,27 @@ struct Column {
   std::size_t index = 0;     ///< in the header, from 0
   std::optional<Unit> unit;  ///< of its numbers; empty: not known
   std::string unit_source;   ///< where that is from: "by its name"
+  std::string unknown_unit;  ///< a word in the place of a unit that is none that is known
+};
+
+/// How a part of a time stands in its column.
+enum class TimePartForm : std::uint8_t {
+  kText,             ///< as parse_time() takes it
+  kDayOfYear,        ///< 1 to 366, behind the year
+  kHoursAndMinutes,  ///< a number without leading zeros: 5 is 00:05, 1340 is 13:40
+};
+
+struct TimePart {
+  std::size_t column = 0;
+  TimePartForm form = TimePartForm::kText;
 };
 
 /// The columns of a file.
 struct Columns {
   std::array<std::optional<Column>, kCsvRoleCount> by_role;
-  /// Those that a time is put together from, with a blank between them: one, a date and a time, or year, month, day,
-  /// hour, minute, second.
-  std::vector<std::size_t> time_parts;
+  /// Those that a time is put together from: one, a date and a time, year and day of the year with a time, or year,
+  /// month, day, hour, minute, second.
+  std::vector<TimePart> time_parts;
   std::optional<std::string> zone;   ///< in which the times are, by the name of their column
   std::optional<bool> is_day_first;  ///< of dates, by the name of their column ("DATE (MM/DD/YYYY)")
   std::vector<std::string> unused;   ///< the names of those that have no role
@@ -49,5 +63,10 @@ using ColumnNames = std::array<std::string, kCsvRoleCount>;
 /// both u and v, or with two columns of one name.
 Result<Columns, Failure> choose_columns(const std::vector<std::string>& header, const ColumnNames& given,
                                         const std::vector<std::string>& row = {});
+
+/// The same for the keys of a message, whose time can stand elsewhere. Fails without a given speed. Names of one letter
+/// are no speed.
+Result<Columns, Failure> choose_keys(const std::vector<std::string>& keys, const ColumnNames& given,
+                                     const std::vector<std::string>& values);
 
 }  // namespace yuragi::daemon::tools::csv

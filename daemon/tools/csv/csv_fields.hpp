@@ -14,6 +14,14 @@
 
 namespace yuragi::daemon::tools::csv {
 
+/// Why a row is not a reading.
+struct RowRefusal {
+  std::string reason = {};  ///< the same for all rows of its kind
+  std::string text = {};    ///< what the row has instead; can be empty
+
+  std::string message() const { return text.empty() ? reason : reason + ": " + text; }
+};
+
 /// The fields of a row that have a role.
 struct Fields {
   std::array<std::optional<std::string_view>, kCsvRoleCount> by_role;  ///< none for a missing column
@@ -28,7 +36,7 @@ class RowSplitter {
   static Result<RowSplitter, Failure> make(const Layout& layout, const ImportOptions& options);
 
   /// The fields of a line, which is changed and must outlive them; false if a condition does not hold.
-  Result<bool, Failure> split(std::span<char> line, Fields& fields);
+  Result<bool, RowRefusal> split(std::span<char> line, Fields& fields);
 
  private:
   RowSplitter(const Layout& layout) : layout_(layout) {}

@@ -4,7 +4,6 @@
 #include <istream>
 #include <utility>
 
-#include "daemon/tools/csv/csv_fields.hpp"
 #include "daemon/tools/csv/csv_layout.hpp"
 #include "daemon/tools/csv/csv_lines.hpp"
 #include "daemon/tools/csv/csv_row.hpp"
@@ -64,23 +63,21 @@ class Import {
     const auto is_row = splitter_.split(line, fields_);
     if (is_row && !*is_row) return {};
     ++report_.rows;
-    const auto taken = [&]() -> Result<void, Failure> {
+    const auto taken = [&]() -> Result<void, RowRefusal> {
       if (!is_row) return is_row.error();
       if (is_again) {
         ++repeated_;
-        return Failure{"the same row as the one before"};
+        return RowRefusal{"the same row as the one before"};
       }
       return take_row();
     }();
     if (taken) return {};
-    if (report_.first_refusals.size() < ImportReport::kMaxRefusalsListed) {
-      report_.first_refusals.push_back(name_ + ":" + std::to_string(lines.number()) + ": " + taken.error().message);
-    }
+    report_.refuse(name_, lines.number(), taken.error());
     if (options_.strict) return Failure{report_.first_refusals.front()};
     return {};
   }
 
-  Result<void, Failure> take_row() {
+  Result<void, RowRefusal> take_row() {
     const auto row = rows_.read(fields_);
     if (!row) return row.error();
     const std::string_view sensor = fields_.at(Role::kSensor).value_or(options_.sensor);
@@ -113,6 +110,12 @@ class Import {
 
 }  // namespace
 
+void ImportReport::refuse(const std::string& file, std::size_t line, const RowRefusal& why) {
+  ++refusals[why.reason];
+  if (first_refusals.size() < kMaxRefusalsListed)
+    first_refusals.push_back(file + ":" + std::to_string(line) + ": " + why.message());
+}
+
 Result<ImportReport, Failure> import_csv(std::istream& in, const std::string& name, const ImportOptions& options,
                                          const Sinks& sinks) {
   Input input(in);
@@ -126,7 +129,7 @@ Result<ImportReport, Failure> import_csv(Input& input, const std::string& name, 
   if (!head) return head.error();
   auto layout = find_layout(*head, options);
   if (!layout) return failed(layout.error());
-  choose_units(*layout, options);
+  if (const auto known = choose_units(*layout, options); !known) return failed(known.error());
   auto survey = survey_rows(input.first_pass(), *layout, options);
   if (!survey) return failed(survey.error());
   if (!input.is_whole()) {
@@ -148,6 +151,8 @@ Result<ImportReport, Failure> import_csv(Input& input, const std::string& name, 
   auto report = survey->is_newest_first ? import.run_backward(lines) : import.run(lines);
   if (!report) return report;
   report->notes.insert(report->notes.begin(), survey->notes.begin(), survey->notes.end());
+  report->notes.insert(report->notes.begin(), layout->notes.begin(), layout->notes.end());
+  report->is_own_export = layout->columns.at(Role::kElapsed).has_value();
   return report;
 }
 

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <functional>
 #include <iosfwd>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "daemon/tools/csv/csv_fields.hpp"
 #include "daemon/tools/csv/csv_input.hpp"
 #include "daemon/tools/csv/csv_options.hpp"
 #include "engine/base/result.hpp"
@@ -20,10 +22,15 @@ struct ImportReport {
   std::vector<std::string> notes;    ///< what was settled, guessed or left out besides, a line each
   std::size_t rows = 0;              ///< below the header, without those that a condition leaves out
   std::size_t taken = 0;
-  std::size_t quantities = 0;               ///< rows with something besides the wind
-  std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
+  std::size_t quantities = 0;                   ///< rows with something besides the wind
+  std::vector<std::string> first_refusals;      ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
+  std::map<std::string, std::size_t> refusals;  ///< how many rows were left out, by reason
+
+  bool is_own_export = false;  ///< what `yuragi export` wrote: nothing was guessed
 
   std::size_t refused() const { return rows - taken; }
+  /// Counts a row that is left out.
+  void refuse(const std::string& file, std::size_t line, const RowRefusal& why);
   static constexpr std::size_t kMaxRefusalsListed = 5;
 };
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <span>
 
+#include <fmt/format.h>
+
+#include "daemon/tools/csv/csv_foreign.hpp"
 #include "daemon/tools/csv/csv_lines.hpp"
 
 namespace yuragi::daemon::tools::csv {
@@ -47,24 +50,56 @@ class TextThenStream : public std::streambuf {
 
 }  // namespace
 
-Input::Input(std::istream& in) : in_(in), begin_(in.tellg()) {
-  if (begin_ != std::streampos(-1)) return;
-  in_.clear();
+Input::Input(std::istream& in) : in_(&in), begin_(in.tellg()) {
+  constexpr std::size_t kExamined = std::size_t{1} << 16;
+  if (begin_ == std::streampos(-1)) {
+    keep();
+    examine(std::string_view(kept_).substr(0, kExamined));
+  } else {
+    std::string beginning(kExamined, '\0');
+    in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    examine(std::string_view(beginning).substr(0, static_cast<std::size_t>(in.gcount())));
+    in.clear();
+    in.seekg(begin_);
+  }
+  if (encoding_ == Encoding::kUtf8 || foreign_) return;
+  if (begin_ == std::streampos(-1)) join();
+  converted_ = converted_to_utf8(stream_ ? *stream_ : in, encoding_);
+  in_ = converted_.get();
+  begin_ = 0;
+  is_whole_ = true;
+}
+
+void Input::examine(std::string_view beginning) {
+  encoding_ = encoding_of(beginning);
+  foreign_ = foreign_kind(beginning);
+}
+
+/// Keeps the beginning of a pipe.
+void Input::keep() {
+  in_->clear();
   constexpr std::size_t kBlock = std::size_t{1} << 16;
-  while (in_ && kept_.size() < kMaxKept) {
+  while (*in_ && kept_.size() < kMaxKept) {
     const std::size_t size = kept_.size();
     kept_.resize(size + kBlock);
-    in_.read(kept_.data() + size, kBlock);
-    kept_.resize(size + static_cast<std::size_t>(in_.gcount()));
+    in_->read(kept_.data() + size, kBlock);
+    kept_.resize(size + static_cast<std::size_t>(in_->gcount()));
   }
-  is_whole_ = in_.eof();
+  is_whole_ = in_->eof();
+}
+
+/// Makes the whole of a pipe one stream.
+void Input::join() {
+  kept_buffer_.reset();
+  joined_ = std::make_unique<TextThenStream>(kept_, *in_);
+  stream_ = std::make_unique<std::istream>(joined_.get());
 }
 
 std::istream& Input::first_pass() {
   if (begin_ != std::streampos(-1)) {
-    in_.clear();
-    in_.seekg(begin_);
-    return in_;
+    in_->clear();
+    in_->seekg(begin_);
+    return *in_;
   }
   const auto end = is_whole_ ? kept_.size() : std::min(kept_.size(), kept_.rfind('\n') + 1);
   kept_buffer_ = std::make_unique<TextInPlace>(kept_, end);
@@ -74,9 +109,7 @@ std::istream& Input::first_pass() {
 
 std::istream& Input::second_pass() {
   if (is_whole_) return first_pass();
-  kept_buffer_.reset();
-  joined_ = std::make_unique<TextThenStream>(kept_, in_);
-  stream_ = std::make_unique<std::istream>(joined_.get());
+  join();
   return *stream_;
 }
 
@@ -85,6 +118,7 @@ Failure too_long_line(const std::string& name, std::size_t number) {
 }
 
 Result<std::vector<std::string>, Failure> first_lines(Input& input, const std::string& name) {
+  if (input.foreign()) return Failure{fmt::format("{}: is {}", name, *input.foreign())};
   std::vector<std::string> texts;
   Lines lines(input.first_pass(), 0);
   constexpr std::size_t kMaxLines = 400;

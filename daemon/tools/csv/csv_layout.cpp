@@ -5,8 +5,12 @@
 #include <cctype>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "daemon/tools/csv/csv_known_tables.hpp"
 #include "daemon/tools/csv/csv_lines.hpp"
 #include "daemon/tools/csv/csv_names.hpp"
+#include "daemon/tools/csv/csv_value.hpp"
 #include "daemon/tools/csv/csv_words.hpp"
 
 namespace yuragi::daemon::tools::csv {
@@ -23,6 +27,16 @@ char delimiter_of(std::string_view header) {
 
 bool is_number_or_date(std::string_view text) {
   return parse_decimal(text, 0).has_value() || has_date(text);
+}
+
+/// "3b", "A0": a byte of a dump, and no word.
+bool is_hexadecimal_byte(std::string_view text) {
+  return text.size() == 2 && text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos &&
+         text.find_first_of("0123456789") != std::string_view::npos;
+}
+
+bool is_data(std::string_view text) {
+  return is_number_or_date(text) || is_hexadecimal_byte(text);
 }
 
 /// A line without its comment sign.
@@ -86,16 +100,25 @@ class LayoutSearch {
   Result<Layout, Failure> find() const {
     const std::size_t begin = next_line(options_.skip.value_or(0), false);
     if (begin >= lines_.size()) return Failure{"has no header line"};
-    if (!options_.header.empty()) return layout_of_names(begin);
+    if (!options_.header.empty()) return layout_of_names(begin, options_.header);
+    if (!options_.skip) {
+      if (auto known = find_known_table(lines_)) return layout_of_known(*known);
+    }
     auto first = layout_at(begin, split(lines_[begin], delimiter(lines_[begin])), false);
-    if (first || options_.skip) return first;
+    if (options_.skip || (first && has_fitting_row(*first))) return first;
 
-    // In its order: a line, two lines, a comment.
-    for (std::size_t i = begin + 1; i < lines_.size(); i = next_line(i + 1, false)) {
-      if (i == begin + 1) i = next_line(i, false);
-      if (i >= lines_.size()) break;
-      if (auto found = layout_at(i, split(lines_[i], delimiter(lines_[i])), false)) return found;
-      if (auto found = layout_of_two(i)) return std::move(*found);
+    // In its order: a line, two lines, a comment. The first whose rows do not fit comes last.
+    std::optional<Layout> unfitting;
+    const auto keep = [&unfitting](Layout found) {
+      if (!unfitting) unfitting = std::move(found);
+    };
+    if (first) keep(*first);
+    for (std::size_t i = next_line(begin + 1, false); i < lines_.size(); i = next_line(i + 1, false)) {
+      auto found = layout_at(i, split(lines_[i], delimiter(lines_[i])), false);
+      if (found && has_fitting_row(*found)) return found;
+      if (found) keep(std::move(*found));
+      auto of_two = layout_of_two(i);
+      if (of_two && has_fitting_row(*of_two)) return std::move(*of_two);
     }
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (!is_comment(lines_[i])) continue;
@@ -104,6 +127,7 @@ class LayoutSearch {
       auto found = layout_at(i, split(text, delimiter(text)), true);
       if (found && found->row.size() == found->header.size()) return found;
     }
+    if (unfitting) return std::move(*unfitting);
     return failure_of(begin, first.error());
   }
 
@@ -130,6 +154,9 @@ class LayoutSearch {
 
   Result<Layout, Failure> layout_at(std::size_t i, std::vector<std::string> header, bool is_comment_header) const {
     if (header.empty()) return Failure{"the header has a quote that is not closed"};
+    if (const auto data = std::ranges::find_if(header, is_data); data != header.end()) {
+      return Failure{fmt::format("line {} is no header, because it has \"{}\"", i + 1, *data)};
+    }
     Layout layout;
     const std::string_view text = is_comment_header ? uncommented(lines_[i], options_.comment) : lines_[i];
     layout.delimiter = delimiter(text);
@@ -152,27 +179,92 @@ class LayoutSearch {
       }
       unit_rows.push_back(std::move(fields));
     }
-    auto columns = choose_columns(layout.header, options_.columns, layout.row);
+    ColumnNames names = columns_of_channels(lines_, layout.header);
+    for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
+      if (!options_.columns[role].empty()) names[role] = options_.columns[role];
+    }
+    auto columns = choose_columns(layout.header, names, layout.row);
     if (!columns) return columns.error();
     layout.columns = std::move(*columns);
-    if (!layout.row.empty()) {
-      for (const auto& row : unit_rows) read_units(layout, row);
-    }
+    if (!layout.row.empty()) read_units(layout, unit_rows);
     read_preamble(layout, i);
+    settle_clock(layout);
     return layout;
   }
 
-  /// A file without a header.
-  Result<Layout, Failure> layout_of_names(std::size_t begin) const {
+  /// A file without a header. Further columns are ignored.
+  Result<Layout, Failure> layout_of_names(std::size_t begin, std::vector<std::string> names) const {
     Layout layout;
     layout.delimiter = delimiter(lines_[begin]);
-    layout.header = options_.header;
+    layout.header = std::move(names);
     layout.row = split(lines_[begin], layout.delimiter);
     layout.first_row = begin + 1;
+    layout.may_rows_be_longer = true;
     auto columns = choose_columns(layout.header, options_.columns, layout.row);
     if (!columns) return columns.error();
     layout.columns = std::move(*columns);
+    settle_clock(layout);
     return layout;
+  }
+
+  Result<Layout, Failure> layout_of_known(const KnownTable& table) const {
+    if (table.first_row >= lines_.size()) return Failure{"has no row below its header"};
+    auto layout = layout_of_names(table.first_row, table.header);
+    if (!layout) return layout;
+    layout->notes.push_back(fmt::format("written by {}", table.program));
+    layout->columns.zone = zone_of_first_line(lines_);
+    if (table.is_without_units) layout->without_units = table.program;
+    return layout;
+  }
+
+  /// The fields of the rows that are among the first lines.
+  template <class Take>
+  void for_first_rows(const Layout& layout, Take take) const {
+    for (std::size_t i = layout.first_row - 1; i < lines_.size(); ++i) {
+      if (without_blanks(lines_[i]).empty() || is_comment(lines_[i])) continue;
+      if (!take(split(lines_[i], layout.delimiter))) return;
+    }
+  }
+
+  /// Returns true if one of the first rows has numbers where times and winds are to stand.
+  bool has_fitting_row(const Layout& layout) const {
+    bool fits = false;
+    for_first_rows(layout, [&](const std::vector<std::string>& fields) {
+      const auto is_number = [&](Role role) {
+        const auto& column = layout.columns.at(role);
+        return column && column->index < fields.size() &&
+               (parse_number(fields[column->index], dimension_of(role)) ||
+                std::ranges::count(fields[column->index], ',') == 4);
+      };
+      const auto is_time = [&](const TimePart& part) {
+        return part.column < fields.size() && fields[part.column].find_first_of("0123456789") != std::string::npos;
+      };
+      fits = std::ranges::all_of(layout.columns.time_parts, is_time) &&
+             (is_number(Role::kSpeed) || (is_number(Role::kU) && is_number(Role::kV)));
+      return !fits;
+    });
+    return fits;
+  }
+
+  /// The hour and the minute can be one number: the column has numbers above 24, and none of more than 59 minutes.
+  void settle_clock(Layout& layout) const {
+    auto& parts = layout.columns.time_parts;
+    if (parts.size() < 2 || parts.size() > 4 || parts.back().form != TimePartForm::kText) return;
+    bool are_hours_and_minutes = true;
+    std::int64_t greatest = 0;
+    for_first_rows(layout, [&](const std::vector<std::string>& fields) {
+      if (parts.back().column >= fields.size()) return true;
+      const std::string& text = fields[parts.back().column];
+      const auto number = parse_decimal(text, 0);
+      constexpr std::size_t kDigits = 4;
+      constexpr std::int64_t kMinutes = 60;
+      are_hours_and_minutes = number && text.size() <= kDigits && text.find('.') == std::string::npos && *number >= 0 &&
+                              *number % 100 < kMinutes;
+      if (number) greatest = std::max(greatest, *number);
+      return are_hours_and_minutes;
+    });
+    constexpr std::int64_t kHours = 24;
+    if (are_hours_and_minutes && greatest > kHours) parts.back().form = TimePartForm::kHoursAndMinutes;
   }
 
   /// A header over two lines: "Wind" above "Speed".
@@ -190,15 +282,26 @@ class LayoutSearch {
     return std::move(*found);
   }
 
-  static void read_units(Layout& layout, const std::vector<std::string>& row) {
-    if (row.size() != layout.header.size()) return;
-    for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
-      auto& column = layout.columns.by_role[role];
-      if (!column) continue;
-      if (const auto unit = find_unit(dimension_of(static_cast<Role>(role)), row[column->index])) {
-        column->unit = unit;
-        column->unit_source = "from the row of units";
+  /// Of rows of words between the header and the first row; a row is one of units if it has one at least.
+  void read_units(Layout& layout, const std::vector<std::vector<std::string>>& rows) const {
+    // Campbell's first line; its third one has the units.
+    const bool are_units_first = lines_[0].starts_with("TOA5") || lines_[0].starts_with("\"TOA5\"");
+    for (const auto& row : rows) {
+      const bool is_first_of_toa5 = are_units_first && &row == &rows.front();
+      if (!is_first_of_toa5 && !std::ranges::any_of(row, is_any_unit)) continue;
+      for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+        auto& column = layout.columns.by_role[index];
+        const Dimension dimension = dimension_of(static_cast<Role>(index));
+        if (!column || column->index >= row.size() || dimension == Dimension::kNone) continue;
+        const std::string& word = row[column->index];
+        if (const auto unit = find_unit(dimension, word)) {
+          column->unit = unit;
+          column->unit_source = "from the row of units";
+        } else if (!column->unit && !words_of(word).empty()) {
+          column->unknown_unit = word;
+        }
       }
+      return;
     }
   }
 
@@ -222,6 +325,7 @@ class LayoutSearch {
       read_legend(layout.columns, line.substr(0, end_of_key), line.substr(end_of_key + 1));
     }
     if (!layout.columns.zone) layout.columns.zone = preamble.zone;
+    if (!layout.columns.zone) layout.columns.zone = zone_of_first_line(lines_);
     if (!preamble.speed_unit) return;
     for (const Role role : {Role::kSpeed, Role::kGust, Role::kU, Role::kV}) {
       auto& column = layout.columns.at(role);
@@ -231,23 +335,39 @@ class LayoutSearch {
     }
   }
 
-  /// Of the line that looks most like a header: the first with the most fields.
+  /// Of the line that looks most like a header: of those above a row of as many fields, or else of all, the first
+  /// with the most names.
   Failure failure_of(std::size_t begin, const Failure& first) const {
-    std::size_t best = begin;
-    std::size_t most = split(lines_[begin], delimiter(lines_[begin])).size();
-    constexpr std::size_t kLooked = 30;
-    for (std::size_t i = begin + 1; i < std::min(lines_.size(), begin + kLooked); ++i) {
+    std::optional<std::size_t> best;
+    std::pair<bool, std::size_t> most{false, 1};
+    for (std::size_t i = begin; i < lines_.size(); i = next_line(i + 1, false)) {
       const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[i]));
-      if (fields.size() <= most || is_comment(lines_[i]) || std::ranges::any_of(fields, is_number_or_date)) continue;
+      if (std::ranges::any_of(fields, is_data)) continue;
+      const auto names =
+          static_cast<std::size_t>(std::ranges::count_if(fields, [](const auto& text) { return !text.empty(); }));
+      const std::pair<bool, std::size_t> here{is_above_a_row(i, fields.size()), names};
+      if (here <= most) continue;
       best = i;
-      most = fields.size();
+      most = here;
     }
-    if (std::ranges::any_of(split(lines_[begin], delimiter(lines_[begin])), is_number_or_date)) {
+    if (!best) {
       return Failure{first.message + "; if the file has no header, name the columns with --header NAMES"};
     }
-    if (best == begin) return first;
-    const auto tried = layout_at(best, split(lines_[best], delimiter(lines_[best])), false);
+    const auto tried = layout_at(*best, split(lines_[*best], delimiter(lines_[*best])), false);
     return tried ? first : tried.error();
+  }
+
+  /// Rows of units may stand between them.
+  bool is_above_a_row(std::size_t header, std::size_t count) const {
+    constexpr std::size_t kMaxBetween = 3;
+    std::size_t i = header;
+    for (std::size_t between = 0; between <= kMaxBetween; ++between) {
+      i = next_line(i + 1, false);
+      if (i >= lines_.size()) return false;
+      const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[header]));
+      if (std::ranges::any_of(fields, is_data)) return count > 1 && fields.size() == count;
+    }
+    return false;
   }
 
   const std::vector<std::string>& lines_;

@@ -18,15 +18,6 @@ std::string_view without_serial_numbers(std::string_view name) {
   return name;
 }
 
-bool is_any_unit(std::string_view text) {
-  for (const Dimension dimension :
-       {Dimension::kTime, Dimension::kSpeed, Dimension::kDirection, Dimension::kTemperature, Dimension::kPressure,
-        Dimension::kHumidity, Dimension::kRain, Dimension::kRainRate}) {
-    if (find_unit(dimension, text)) return true;
-  }
-  return false;
-}
-
 /// Takes the words of a statistic off the end of a name. Campbell's: WVT and WVc are wind vectors, D1 their direction,
 /// S the mean speed, SD1 the deviation.
 Statistic take_statistic(std::vector<std::string>& words) {
@@ -64,26 +55,75 @@ void take_unit(std::vector<std::string>& words, Name& name) {
   }
 }
 
-bool is_number(std::string_view word) {
+bool is_all_digits(std::string_view word) {
   return !word.empty() && std::ranges::all_of(word, [](char c) { return c >= '0' && c <= '9'; });
 }
 
 bool is_height(std::string_view word) {
-  return word.size() > 1 && word.back() == 'm' && is_number(word.substr(0, word.size() - 1));
+  return word.size() > 1 && word.back() == 'm' && is_all_digits(word.substr(0, word.size() - 1));
+}
+
+/// "ws10m" is "ws" at 10 m.
+void take_height_off(std::string& word) {
+  if (word.size() < 3 || word.back() != 'm') return;
+  const std::size_t end = word.find_last_not_of("0123456789", word.size() - 2);
+  if (end != std::string::npos && end + 2 < word.size()) word.resize(end + 1);
+}
+
+/// What stands in brackets at the end of a name, or else behind its last comma.
+std::string_view in_place_of_unit(std::string_view name) {
+  name = without_blanks(name);
+  if (name.ends_with(')') || name.ends_with(']')) {
+    const auto open = name.find_last_of("([");
+    return open == std::string_view::npos ? std::string_view() : name.substr(open + 1, name.size() - open - 2);
+  }
+  const auto comma = name.rfind(',');
+  return comma == std::string_view::npos ? std::string_view() : without_blanks(name.substr(comma + 1));
+}
+
+/// The statistic that words in brackets name: "(10 min max)".
+Statistic statistic_in(std::string_view remark) {
+  std::vector<std::string> words = words_of(remark);
+  if (std::ranges::find(words, "gust") != words.end()) return Statistic::kMax;
+  words.insert(words.begin(), "");
+  return take_statistic(words);
+}
+
+/// Returns true for what describes a column, and is no unit: "10 min avg", "true", "10m".
+bool is_remark(std::string_view text) {
+  static constexpr auto kRemarks = std::to_array<std::string_view>(
+      {"avg",       "average", "mean",   "max",     "maximum", "gust",       "peak", "inst",     "instant",
+       "min",       "mins",    "minute", "minutes", "h",       "hr",         "hour", "hours",    "m",
+       "agl",       "vector",  "scalar", "true",    "tn",      "t",          "mag",  "magnetic", "north",
+       "from",      "of",      "at",     "height",  "sensor",  "anemometer", "mast", "raw",      "horizontal",
+       "resultant", "wvt",     "wvc",    "smp",     "std",     "sec",        "s"});
+  const std::vector<std::string> words = words_of(text);
+  return std::ranges::all_of(words, [](const std::string& word) {
+    return is_all_digits(word) || is_height(word) || std::ranges::find(kRemarks, word) != kRemarks.end();
+  });
 }
 
 }  // namespace
 
 Name parse_name(std::string_view text) {
+  text = without_serial_numbers(text);
   Name name;
-  std::vector<std::string> words = words_of(without_serial_numbers(text));
+  std::vector<std::string> words = words_of(text);
   // The statistic stands before the unit or behind it: WS_ms_Avg, wind_speed_mean_m_s.
   name.statistic = take_statistic(words);
   take_unit(words, name);
+  const std::string_view remark = in_place_of_unit(text);
+  if (name.unit_words.empty() && !remark.empty()) {
+    Name base = parse_name(text.substr(0, static_cast<std::size_t>(remark.data() - text.data()) - 1));
+    if (base.statistic == Statistic::kMean) base.statistic = statistic_in(remark);
+    if (base.unit_words.empty() && base.unknown_unit.empty() && !is_remark(remark)) base.unknown_unit = remark;
+    return base;
+  }
   const Statistic before = take_statistic(words);
   if (name.statistic == Statistic::kMean) name.statistic = before;
   // A height is not part of the name.
   std::erase_if(words, is_height);
+  std::ranges::for_each(words, take_height_off);
   name.stem = joined(words);
   return name;
 }

@@ -20,6 +20,10 @@ namespace {
 constexpr int kElapsedDecimals = 9;
 constexpr std::size_t kMaxOddDirections = 5;
 
+bool is_ascii(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
 /// The start of a field with any content.
 std::string shown(std::string_view text) {
   constexpr std::size_t kShown = 40;
@@ -29,8 +33,8 @@ std::string shown(std::string_view text) {
   return "\"" + start + (text.size() > kShown ? "...\"" : "\"");
 }
 
-Failure refusal(std::string_view what, std::string_view text) {
-  return {std::string(what) + " " + shown(text)};
+RowRefusal refusal(std::string reason, std::string_view text) {
+  return {.reason = std::move(reason), .text = shown(text)};
 }
 
 }  // namespace
@@ -59,7 +63,7 @@ bool RowReader::is_missing(Role role, std::string_view text) const {
   }
   if (!number) return false;
   const Unit unit = number->unit.value_or(unit_of(role));
-  return is_missing_number(role, number->value, number->value * unit.factor + unit.offset) ||
+  return is_missing_number(role, number->value, in_base(unit, number->value)) ||
          number->value == survey_.missing_mark[static_cast<std::size_t>(role)];
 }
 
@@ -68,25 +72,25 @@ Unit RowReader::unit_of(Role role) const {
   return column && column->unit ? *column->unit : Unit{};
 }
 
-Result<Row, Failure> RowReader::read(const Fields& fields) {
+Result<Row, RowRefusal> RowReader::read(const Fields& fields) {
   Row row;
   wind::Reading& reading = row.reading;
   if (const auto done = read_wind(fields, reading); !done) return done.error();
 
   const auto gust_m_s = read_speed(fields, Role::kGust);
   if (!gust_m_s) return gust_m_s.error();
-  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero:", *fields.at(Role::kGust));
+  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero", *fields.at(Role::kGust));
   reading.gust_m_s = *gust_m_s;
 
   if (const auto quality = fields.at(Role::kQuality)) {
     const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), *quality);
-    if (word == kQualityWords.end()) return refusal("unknown quality:", *quality);
+    if (word == kQualityWords.end()) return refusal("unknown quality", *quality);
     reading.quality = static_cast<wind::ReadingQuality>(word - kQualityWords.begin());
   }
   if (!wind::is_plausible(reading)) {
-    return Failure{"impossible wind: " + std::to_string(reading.speed_m_s) + " m/s" +
-                   (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "") +
-                   " (check --unit; if it is a mark for no value, add --missing)"};
+    return RowRefusal{.reason = "impossible wind (check --unit; if it is a mark for no value, add --missing)",
+                      .text = std::to_string(reading.speed_m_s) + " m/s" +
+                              (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "")};
   }
 
   // The time comes last: only an accepted row advances it.
@@ -97,16 +101,17 @@ Result<Row, Failure> RowReader::read(const Fields& fields) {
   return row;
 }
 
-Result<Instant, Failure> RowReader::read_time(const Fields& fields) {
+Result<Instant, RowRefusal> RowReader::read_time(const Fields& fields) {
   const std::string_view text = fields.time;
   const auto written = parse_time(text, survey_.time_format);
-  if (!written) return refusal("not a time (" + std::string(name_of(survey_.time_format)) + "; --time-format):", text);
-  UtcTime utc = written->clock;
+  if (!written) return refusal("not a time (" + std::string(name_of(survey_.time_format)) + "; --time-format)", text);
+  const UtcTime clock = survey_.typical_year ? in_typical_year(written->clock) : written->clock;
+  UtcTime utc = clock;
   if (written->utc_offset) {
     utc -= *written->utc_offset;
   } else {
-    const auto known = zone_.to_utc(written->clock, last_utc_);
-    if (!known) return refusal("a time that does not exist in " + zone_.name() + " (check --zone):", text);
+    const auto known = zone_.to_utc(clock, last_utc_);
+    if (!known) return refusal("a time that does not exist in " + zone_.name() + " (check --zone)", text);
     utc = *known;
   }
 
@@ -114,16 +119,16 @@ Result<Instant, Failure> RowReader::read_time(const Fields& fields) {
   Instant time{MonoTime(utc - first_utc_.value_or(utc)), utc};
   if (const auto elapsed = fields.at(Role::kElapsed)) {
     const auto ns = parse_decimal(*elapsed, kElapsedDecimals);
-    if (!ns) return refusal("not a number of seconds:", *elapsed);
+    if (!ns) return refusal("not a number of seconds", *elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }
   wind::Reading recordable;
   recordable.time = time;
   if (time.mono < last_) {
     ++went_back_;
-    return refusal("time goes back:", text);
+    return refusal("time goes back", text);
   }
-  if (!drivers::windlog::is_recordable(recordable)) return refusal("time out of range:", text);
+  if (!drivers::windlog::is_recordable(recordable)) return refusal("time out of range", text);
 
   if (first_utc_ && time.mono == last_) ++same_time_;
   ++(written->utc_offset ? zoned_ : unzoned_);
@@ -133,7 +138,17 @@ Result<Instant, Failure> RowReader::read_time(const Fields& fields) {
   return time;
 }
 
-Result<std::optional<double>, Failure> RowReader::read_number(const Fields& fields, Role role) {
+UtcTime RowReader::in_typical_year(UtcTime clock) const {
+  const auto day = std::chrono::floor<std::chrono::days>(clock);
+  const std::chrono::year_month_day ymd(day);
+  // The last hour of the last day ends in the next year.
+  const bool is_end =
+      first_utc_ && ymd.month() == std::chrono::January && unsigned(ymd.day()) == 1 && clock == UtcTime(day);
+  const std::chrono::year year = *survey_.typical_year + std::chrono::years(is_end ? 1 : 0);
+  return UtcTime(std::chrono::sys_days(year / ymd.month() / ymd.day())) + (clock - day);
+}
+
+Result<std::optional<double>, RowRefusal> RowReader::read_number(const Fields& fields, Role role) {
   const auto text = fields.at(role);
   if (!text) return std::optional<double>{};
   if (is_missing(role, *text)) {
@@ -141,25 +156,25 @@ Result<std::optional<double>, Failure> RowReader::read_number(const Fields& fiel
     return std::optional<double>{};
   }
   const auto number = parse_number(*text, dimension_of(role));
-  if (!number) return refusal("not a number in " + std::string(name_of(role)) + ":", *text);
+  if (!number) return refusal("not a number in " + std::string(name_of(role)), *text);
   const Unit unit = number->unit.value_or(unit_of(role));
-  return std::optional<double>(number->value * unit.factor + unit.offset);
+  return std::optional<double>(in_base(unit, number->value));
 }
 
-Result<std::optional<double>, Failure> RowReader::read_speed(const Fields& fields, Role role) {
+Result<std::optional<double>, RowRefusal> RowReader::read_speed(const Fields& fields, Role role) {
   // A calm in words is a speed.
   if (const auto text = fields.at(role); text && text->size() == 4 && lower(*text) == "calm") return std::optional(0.0);
   return read_number(fields, role);
 }
 
 /// Speed and direction, from themselves or from components.
-Result<void, Failure> RowReader::read_wind(const Fields& fields, wind::Reading& reading) {
+Result<void, RowRefusal> RowReader::read_wind(const Fields& fields, wind::Reading& reading) {
   if (const auto speed = fields.at(Role::kSpeed)) {
     if (std::ranges::count(*speed, ',') == 4) return read_packed_wind(*speed, reading);
     const auto speed_m_s = read_speed(fields, Role::kSpeed);
     if (!speed_m_s) return speed_m_s.error();
-    if (!*speed_m_s) return Failure{"no speed"};
-    if (**speed_m_s < 0.0) return refusal("speed below zero:", *speed);
+    if (!*speed_m_s) return RowRefusal{"no speed"};
+    if (**speed_m_s < 0.0) return refusal("speed below zero", *speed);
     reading.speed_m_s = **speed_m_s;
     const auto direction = fields.at(Role::kDirection);
     if (direction) reading.direction_deg = read_direction(*direction);
@@ -170,7 +185,7 @@ Result<void, Failure> RowReader::read_wind(const Fields& fields, wind::Reading& 
   if (!u_m_s) return u_m_s.error();
   const auto v_m_s = read_number(fields, Role::kV);
   if (!v_m_s) return v_m_s.error();
-  if (!*u_m_s || !*v_m_s) return Failure{"no u or no v"};
+  if (!*u_m_s || !*v_m_s) return RowRefusal{"no u or no v"};
   const wind::Vector wind = (options_.components_are_from ? -1.0 : 1.0) * wind::Vector{**u_m_s, **v_m_s};
   reading.speed_m_s = speed_of(wind);
   if (reading.speed_m_s > 0.0) reading.direction_deg = wind::direction_from_deg(wind);
@@ -178,26 +193,20 @@ Result<void, Failure> RowReader::read_wind(const Fields& fields, wind::Reading& 
 }
 
 /// The field WND of NOAA's Integrated Surface Database: "310,1,N,0051,1" is 310 degrees, 5.1 m/s.
-Result<void, Failure> RowReader::read_packed_wind(std::string_view text, wind::Reading& reading) {
+Result<void, RowRefusal> RowReader::read_packed_wind(std::string_view text, wind::Reading& reading) {
   std::string copy(text);
   std::vector<std::string_view> parts;
-  if (!split_csv_line(copy, ',', parts) || parts.size() != 5) return refusal("not a wind in NOAA's format:", text);
+  if (!split_csv_line(copy, ',', parts) || parts.size() != 5) return refusal("not a wind in NOAA's format", text);
   const auto direction = parse_number(parts[0], Dimension::kNone);
   const auto speed = parse_number(parts[3], Dimension::kNone);
-  if (!direction || !speed) return refusal("not a wind in NOAA's format:", text);
+  if (!direction || !speed) return refusal("not a wind in NOAA's format", text);
   constexpr double kNoDirection = 999.0;
   constexpr double kNoSpeed = 9999.0;
   constexpr double kTenth = 0.1;
-  if (speed->value == kNoSpeed) return Failure{"no speed"};
+  if (speed->value == kNoSpeed) return RowRefusal{"no speed"};
   reading.speed_m_s = speed->value * kTenth;
   if (direction->value != kNoDirection) reading.direction_deg = read_direction(parts[0]);
   return {};
-}
-
-DirectionUnit RowReader::direction_unit() const {
-  if (options_.direction_unit != DirectionUnit::kAuto) return options_.direction_unit;
-  const auto& column = columns_.at(Role::kDirection);
-  return column && column->unit && column->unit->name == "radians" ? DirectionUnit::kRadians : DirectionUnit::kDegrees;
 }
 
 /// Nullopt if the field is not a direction; the speed beside it is still valid.
@@ -210,16 +219,13 @@ std::optional<double> RowReader::read_direction(std::string_view text) {
   static const std::map<std::string, double, std::less<>> kWords = {
       {"north", 0.0}, {"east", 90.0}, {"south", 180.0}, {"west", 270.0}};
   std::optional<double> direction_deg = compass_point_deg(text);
+  if (!direction_deg && !is_ascii(text)) direction_deg = compass_point_deg(joined(words_of(text)));
   if (!direction_deg) {
     if (const auto word = kWords.find(lower(text.substr(0, 6))); word != kWords.end()) direction_deg = word->second;
   }
   if (!direction_deg) {
-    if (const auto number = parse_number(text, Dimension::kDirection)) {
-      const DirectionUnit unit = direction_unit();
-      direction_deg = number->value;
-      if (unit == DirectionUnit::kRadians) direction_deg = number->value / kRadPerDeg;
-      if (unit == DirectionUnit::kPoint16) direction_deg = number->value * kDegPerCompassPoint;
-    }
+    const auto number = parse_number(text, Dimension::kDirection);
+    if (number) direction_deg = in_base(number->unit.value_or(unit_of(Role::kDirection)), number->value);
   }
 
   // Both -180 to 180 and 0 to 360 are accepted, and a little more for rounding.
@@ -286,7 +292,7 @@ std::vector<std::string> RowReader::describe() const {
         break;
       case Role::kDirection:
         line += options_.direction_is_toward ? " (where it blows to" : " (where it comes from";
-        line += direction_unit() == DirectionUnit::kRadians ? ", in radians)" : ")";
+        line += fmt::format(", in {})", unit_of(role).name);
         break;
       case Role::kElapsed:
         line += " (s)";
@@ -326,11 +332,10 @@ std::vector<std::string> RowReader::notes() const {
     lines.push_back("the same time as the one before: " + count_text(same_time_, "reading") +
                     ", kept a nanosecond apart; are the times rounded?");
   }
-  if (went_back_ > 0 && unzoned_ > 0) {
-    lines.push_back(count_text(went_back_, "row") +
-                    " go back in time: if the clock changed to winter time, add --zone (such as Europe/Berlin); if "
-                    "there are several "
-                    "stations, choose one with --where COLUMN=VALUE");
+  if (went_back_ > 0) {
+    lines.push_back(count_text(went_back_, "row") + " go back in time and are left out: " +
+                    (unzoned_ > 0 ? "if the clock changed to winter time, add --zone (such as Europe/Berlin); " : "") +
+                    "if there are several stations, choose one with --where COLUMN=VALUE");
   }
   return lines;
 }

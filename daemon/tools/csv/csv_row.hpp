@@ -29,7 +29,7 @@ class RowReader {
   static Result<RowReader, Failure> make(const Layout& layout, const Survey& survey, const ImportOptions& options);
 
   /// The reading in a row, or why it is refused. Call it in the order of time.
-  Result<Row, Failure> read(const Fields& fields);
+  Result<Row, RowRefusal> read(const Fields& fields);
 
   /// How each column was understood, a line each; complete after the last row.
   std::vector<std::string> describe() const;
@@ -40,18 +40,19 @@ class RowReader {
   RowReader(const Layout& layout, const Survey& survey, const ImportOptions& options)
       : columns_(layout.columns), survey_(survey), options_(options) {}
 
-  Result<Instant, Failure> read_time(const Fields& fields);
+  Result<Instant, RowRefusal> read_time(const Fields& fields);
   /// The number in its base unit.
-  Result<std::optional<double>, Failure> read_number(const Fields& fields, Role role);
-  Result<std::optional<double>, Failure> read_speed(const Fields& fields, Role role);
+  Result<std::optional<double>, RowRefusal> read_number(const Fields& fields, Role role);
+  Result<std::optional<double>, RowRefusal> read_speed(const Fields& fields, Role role);
   std::optional<double> read_direction(std::string_view text);
-  Result<void, Failure> read_wind(const Fields& fields, wind::Reading& reading);
-  Result<void, Failure> read_packed_wind(std::string_view text, wind::Reading& reading);
+  Result<void, RowRefusal> read_wind(const Fields& fields, wind::Reading& reading);
+  Result<void, RowRefusal> read_packed_wind(std::string_view text, wind::Reading& reading);
   std::optional<wind::StationQuantities> read_quantities(const Fields& fields, const Instant& time);
   bool is_missing(Role role, std::string_view text) const;
   Unit unit_of(Role role) const;
-  DirectionUnit direction_unit() const;
   std::string describe_time() const;
+  /// The clock of a time, in the year that all months of a typical one are put on.
+  UtcTime in_typical_year(UtcTime clock) const;
 
   const Columns& columns_;
   const Survey& survey_;

@@ -19,6 +19,13 @@ struct FormatTally {
   std::size_t forward = 0;
   std::size_t back = 0;
   std::optional<UtcTime> last;
+  std::optional<std::chrono::year> first_year;
+  std::optional<std::chrono::year> last_year;
+  std::size_t back_to_years = 0;
+  std::size_t changes_of_year = 0;
+  std::size_t back_in_year = 0;  ///< if all years were one
+  Nanoseconds last_in_year{0};
+  bool has_leap_day = false;
 
   void add(const std::optional<Time>& time) {
     if (!time) return;
@@ -27,7 +34,94 @@ struct FormatTally {
     if (last && utc > *last) ++forward;
     if (last && utc < *last) ++back;
     last = utc;
+    add_in_year(time->clock);
   }
+
+  /// A typical year has each month from another year. Its last hour may end in the next year.
+  bool is_typical_year() const {
+    constexpr std::size_t kMaxChanges = 24;
+    return back_to_years > 0 && back_in_year <= 1 && changes_of_year <= kMaxChanges;
+  }
+
+  /// The year of its first row, or the next one that has as many days.
+  std::chrono::year typical_year() const {
+    std::chrono::year year = *first_year;
+    while (year.is_leap() != has_leap_day) ++year;
+    return year;
+  }
+
+ private:
+  void add_in_year(UtcTime clock) {
+    const std::chrono::year_month_day ymd(std::chrono::floor<std::chrono::days>(clock));
+    if (!first_year) first_year = ymd.year();
+    if (last_year && ymd.year() < *last_year) ++back_to_years;
+    if (last_year && ymd.year() != *last_year) ++changes_of_year;
+    last_year = ymd.year();
+    has_leap_day = has_leap_day || (ymd.month() == std::chrono::February && unsigned(ymd.day()) == 29);
+    // In a leap year, so that the days of all years are in order.
+    constexpr auto kLeapYear = std::chrono::year(2000);
+    const auto day = std::chrono::sys_days(kLeapYear / ymd.month() / ymd.day());
+    const Nanoseconds in_year =
+        UtcTime(day) + (clock - std::chrono::sys_days(ymd)) - UtcTime(std::chrono::sys_days(kLeapYear / 1 / 1));
+    if (count > 1 && in_year < last_in_year) ++back_in_year;
+    last_in_year = in_year;
+  }
+};
+
+/// Times that are numbers without a date, as seconds.
+class SecondsTally {
+ public:
+  void add(std::string_view text) {
+    constexpr std::int64_t kSecond_ns = 1'000'000'000;
+    constexpr std::int64_t kHundred = 100;
+    constexpr std::int64_t kMinutes = 60;
+    const auto ns = parse_decimal(text, 9);
+    if (!ns) return;
+    const std::int64_t whole = *ns / kSecond_ns;
+    are_whole_ = are_whole_ && *ns % kSecond_ns == 0;
+    is_past_minute_ = is_past_minute_ || whole % kHundred >= kMinutes;
+    greatest_ = std::max(greatest_, whole);
+    ++count_;
+    if (last_ && *ns < *last_) drops_.push_back(*last_ - *ns);
+    if (last_ && *ns > *last_) steps_.push_back(*ns - *last_);
+    if (drops_.size() > kMaxSteps) drops_.resize(kMaxSteps);
+    if (steps_.size() > kMaxSteps) steps_.resize(kMaxSteps);
+    last_ = *ns;
+  }
+
+  /// Why they are hardly seconds; nullopt if they may be.
+  std::optional<std::string_view> doubt() {
+    if (count_ < 3) return std::nullopt;
+    if (steps_.empty()) return "they do not grow";
+    const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>(steps_.size() / 2);
+    std::ranges::nth_element(steps_, middle);
+    const std::int64_t usual = *middle;
+    // A clock that is put right goes back by little, one of hours or of the day begins again.
+    constexpr std::int64_t kManySteps = 5;
+    constexpr std::int64_t kHours = 24;
+    constexpr std::ptrdiff_t kOften = 3;
+    const auto beginnings =
+        std::ranges::count_if(drops_, [usual](std::int64_t drop) { return drop > kManySteps * usual; });
+    if (beginnings >= kOften || (beginnings > 0 && are_whole_ && greatest_ <= kHours)) return "they begin again";
+    constexpr std::int64_t kFirstHour = 100;
+    if (are_whole_ && greatest_ >= kFirstHour && !is_past_minute_)
+      return "they look like hours and minutes (1359 and then 1400)";
+    const auto even =
+        std::ranges::count_if(steps_, [usual](std::int64_t step) { return 2 * step > usual && 2 * step < 3 * usual; });
+    constexpr double kEven = 0.8;
+    if (static_cast<double>(even) < kEven * static_cast<double>(steps_.size())) return "their steps are uneven";
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::size_t kMaxSteps = 10'000;
+  std::vector<std::int64_t> steps_;  ///< forward; the first ones
+  std::vector<std::int64_t> drops_;  ///< back
+  std::optional<std::int64_t> last_;
+  std::int64_t greatest_ = 0;
+  std::size_t count_ = 0;
+  bool are_whole_ = true;
+  bool is_past_minute_ = false;
 };
 
 /// The greatest numbers of a column.
@@ -100,6 +194,7 @@ class Surveyor {
       ++numbers_;
       if (!number_format_) number_format_ = is_in_ms() ? TimeFormat::kUnixMs : *count_format;
       tally(*number_format_).add(parse_time(text, *number_format_));
+      if (*number_format_ == TimeFormat::kSeconds) seconds_.add(text);
       tally(TimeFormat::kCompact).add(parse_time(text, TimeFormat::kCompact));
       return;
     }
@@ -110,6 +205,16 @@ class Surveyor {
     tally(TimeFormat::kMonthFirst).add(month_first);
     if (day_first && month_first && day_first->clock != month_first->clock && ambiguous_.empty()) ambiguous_ = text;
     if (text.size() > 5 && text.substr(0, 6).find('.') != std::string_view::npos) ++dotted_;
+  }
+
+  /// By the name of the column, or its row of units. The program's own exports have further times.
+  bool are_named_seconds() const {
+    const auto& column = *layout_.columns.at(Role::kTime);
+    if (column.unit || layout_.columns.at(Role::kElapsed)) return true;
+    return std::ranges::any_of(words_of(column.name), [](const std::string& word) {
+      return word == "s" || word == "sec" || word == "secs" || word == "seconds" || word == "elapsed" ||
+             word == "uptime";
+    });
   }
 
   bool is_in_ms() const {
@@ -124,7 +229,7 @@ class Surveyor {
     const auto number = parse_number(*text, dimension_of(role));
     if (!number) return std::nullopt;
     const Unit unit = number->unit.value_or(layout_.columns.at(role)->unit.value_or(Unit{}));
-    const double base = number->value * unit.factor + unit.offset;
+    const double base = in_base(unit, number->value);
     if (is_missing_number(role, number->value, base)) return std::nullopt;
     numbers_of_[static_cast<std::size_t>(role)].add(number->value);
     if (is_possible_mark(role, number->value)) return std::nullopt;
@@ -140,6 +245,14 @@ class Surveyor {
       const std::string name = lower(layout_.columns.at(Role::kTime)->name);
       const bool is_unix = name.find("unix") != std::string::npos || name.find("epoch") != std::string::npos;
       const bool is_compact = !is_unix && !is_in_ms() && count(TimeFormat::kCompact) == numbers_;
+      if (!is_compact && *number_format_ == TimeFormat::kSeconds && !are_named_seconds()) {
+        if (const auto doubt = seconds_.doubt()) {
+          return Failure{
+              fmt::format("the times in \"{}\" are numbers without a date, and no seconds, because {}; name the "
+                          "columns with --date and --time, or add --time-format seconds if they are seconds",
+                          layout_.columns.at(Role::kTime)->name, *doubt)};
+        }
+      }
       return settle_as(is_compact ? TimeFormat::kCompact : *number_format_);
     }
     if (dates == 0 || count(TimeFormat::kIso) == dates) return settle_as(TimeFormat::kIso);
@@ -153,6 +266,11 @@ class Surveyor {
     result_.time_format = format;
     const FormatTally& times = tally(format);
     result_.is_newest_first = times.back >= 2 && times.back > 4 * times.forward;
+    if (is_calendar(format) && times.is_typical_year()) {
+      result_.typical_year = times.typical_year();
+      result_.notes.push_back(fmt::format("a typical year, whose months are of different years: all are put on {}",
+                                          static_cast<int>(*result_.typical_year)));
+    }
     return {};
   }
 
@@ -188,7 +306,7 @@ class Surveyor {
       if (!numbers.greatest || !is_possible_mark(role, *numbers.greatest)) continue;
       const Column& column = *layout_.columns.at(role);
       const bool is_storm = dimension_of(role) == Dimension::kSpeed && column.unit &&
-                            *numbers.greatest * column.unit->factor > kStrangeSpeed_m_s;
+                            in_base(*column.unit, *numbers.greatest) > kStrangeSpeed_m_s;
       if (numbers.is_far_above_others() && (numbers.times > 1 || is_storm)) {
         result_.missing_mark[index] = numbers.greatest;
         result_.notes.push_back(fmt::format(
@@ -236,6 +354,7 @@ class Surveyor {
   std::array<FormatTally, kCsvTimeFormatCount> formats_;
   std::size_t numbers_ = 0;  ///< times that are numbers
   std::optional<TimeFormat> number_format_;
+  SecondsTally seconds_;
   std::string ambiguous_;  ///< the first date that can be read either way
   std::size_t dotted_ = 0;
   std::array<NumberTally, kCsvRoleCount> numbers_of_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <istream>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ namespace yuragi::daemon::tools::csv {
 struct Survey {
   TimeFormat time_format = TimeFormat::kIso;
   bool is_newest_first = false;
+  std::optional<std::chrono::year> typical_year;                  ///< months of different years are put on it
   std::array<std::optional<double>, kCsvRoleCount> missing_mark;  ///< a number that stands for no value
   std::vector<std::string> notes;                                 ///< what was settled, for people
 };

@@ -50,6 +50,7 @@ class CalendarText {
     }
     if (first->count == 4) {
       if (format != TimeFormat::kIso || !take_any("-/. ")) return std::nullopt;
+      if (const auto day = take_day_of_year(first->value)) return day;
       const auto month = take_month();
       if (!month || !take_any("-/. ")) return std::nullopt;
       const auto day = take_digits(2);
@@ -131,7 +132,7 @@ class CalendarText {
 
   /// Takes the separator between a date and a clock time.
   bool take_separator() {
-    if (!take_any("Tt ,;_")) return false;
+    if (!take_any("Tt ,;_:")) return false;
     skip_blanks();
     return true;
   }
@@ -146,6 +147,18 @@ class CalendarText {
     }
     if (digits.count == 0 || (!rest_.empty() && is_digit(rest_.front()))) return std::nullopt;
     return digits;
+  }
+
+  /// Three digits, from 1 to 365 or 366.
+  std::optional<std::chrono::sys_days> take_day_of_year(int year) {
+    if (rest_.size() < 3 || !std::ranges::all_of(rest_.substr(0, 3), is_digit)) return std::nullopt;
+    if (rest_.size() > 3 && is_digit(rest_[3])) return std::nullopt;
+    const auto digits = take_digits(3);
+    const auto first = day_of(year, 1, 1);
+    if (!digits || digits->value < 1 || !first) return std::nullopt;
+    const std::chrono::sys_days day = *first + std::chrono::days(digits->value - 1);
+    if (std::chrono::year_month_day(day).year() != std::chrono::year(year)) return std::nullopt;
+    return day;
   }
 
   bool take_any(std::string_view signs) {

@@ -12,7 +12,8 @@ namespace yuragi::daemon::tools::csv {
 /// The format of times in a CSV file.
 enum class TimeFormat : std::uint8_t {
   kAuto,        ///< guessed from all rows
-  kIso,         ///< the year first: 2018-07-20T14:00:00.1Z, 2018/7/20 2:00 PM, 20180720 1400; or the month by its name
+  kIso,         ///< the year first: 2018-07-20T14:00:00.1Z, 2018/7/20 2:00 PM, 20180720 1400, 20180720:1400, 2018-201
+                ///< (day of the year); or the month by its name
   kDayFirst,    ///< 20/07/2018 14:00, 20.7.18 14:00, 20-Jul-2018 02:00:00 PM
   kMonthFirst,  ///< 07/20/2018 14:00, 7/20/18 2:00 PM, 7/20/18 2:00p
   kCompact,     ///< digits alone: YYYYMMDD, YYYYMMDDHH, YYYYMMDDHHMM, YYYYMMDDHHMMSS

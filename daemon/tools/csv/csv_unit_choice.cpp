@@ -4,8 +4,11 @@
 #include <array>
 #include <initializer_list>
 
+#include <fmt/format.h>
+
 #include "daemon/tools/csv/csv_value.hpp"
 #include "daemon/tools/csv/csv_words.hpp"
+#include "engine/base/compass.hpp"
 
 namespace yuragi::daemon::tools::csv {
 namespace {
@@ -28,6 +31,7 @@ constexpr std::array kKnownWriters = {
     KnownWriter{"NDBC", {"wspd", "gst"}, "m/s", "C"},
     KnownWriter{"ECMWF", {"u10", "v10"}, "m/s", "K"},
     KnownWriter{"WeatherFlow", {"windlull", "windavg"}, "m/s", "C"},
+    KnownWriter{"WSLink", {"t1ws", ""}, "m/s", "C"},
 };
 
 bool has_column(const Layout& layout, std::string_view name) {
@@ -92,6 +96,41 @@ void use_unit_of_fields(Layout& layout) {
   }
 }
 
+constexpr const char* kSpeedUnits = "m/s, km/h, kn, mph, ft/s or Bft";
+
+Result<void, Failure> check_unknown_units(const Layout& layout) {
+  for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+    const auto& column = layout.columns.by_role[index];
+    if (!column || column->unit) continue;
+    const auto role = static_cast<Role>(index);
+    const bool is_speed = dimension_of(role) == Dimension::kSpeed;
+    if (!is_speed && role != Role::kDirection) continue;
+    const std::string option = role == Role::kGust        ? "--gust-unit or --unit"
+                               : role == Role::kDirection ? "--direction-unit"
+                                                          : "--unit";
+    const std::string allowed = is_speed ? std::string(kSpeedUnits) : "deg, rad or point16";
+    if (!column->unknown_unit.empty()) {
+      return Failure{fmt::format("the unit \"{}\" of column \"{}\" is not known; add {} with {}", column->unknown_unit,
+                                 column->name, option, allowed)};
+    }
+    if (is_speed && !layout.without_units.empty()) {
+      return Failure{
+          fmt::format("{} writes no units into its files; add --unit with {}", layout.without_units, allowed)};
+    }
+  }
+  return {};
+}
+
+/// The numbers of directions: as the user states it, or else as the column is named.
+void set_direction_unit(Layout& layout, DirectionUnit unit) {
+  auto& column = layout.columns.at(Role::kDirection);
+  if (!column || unit == DirectionUnit::kAuto) return;
+  column->unit = unit == DirectionUnit::kPoint16
+                     ? Unit{"points of 22.5 degrees", kDegPerCompassPoint}
+                     : find_unit(Dimension::kDirection, unit == DirectionUnit::kRadians ? "rad" : "deg");
+  column->unit_source = "by --direction-unit";
+}
+
 void set_by_option(Layout& layout, Role role, const std::optional<Unit>& unit, const char* option) {
   auto& column = layout.columns.at(role);
   if (!column || !unit) return;
@@ -101,12 +140,14 @@ void set_by_option(Layout& layout, Role role, const std::optional<Unit>& unit, c
 
 }  // namespace
 
-void choose_units(Layout& layout, const ImportOptions& options) {
+Result<void, Failure> choose_units(Layout& layout, const ImportOptions& options) {
   for (const Role role : {Role::kSpeed, Role::kGust, Role::kU, Role::kV, Role::kVerticalSpeed}) {
     set_by_option(layout, role, options.unit, "--unit");
   }
   set_by_option(layout, Role::kGust, options.gust_unit, "--gust-unit");
+  set_direction_unit(layout, options.direction_unit);
   use_unit_of_fields(layout);
+  if (const auto known = check_unknown_units(layout); !known) return known;
   use_weewx_system(layout);
   use_known_writer(layout);
   use_unit_beside(layout, Role::kGust, Role::kSpeed);
@@ -124,6 +165,7 @@ void choose_units(Layout& layout, const ImportOptions& options) {
     column->unit = base_unit(dimension_of(role));
     column->unit_source = kAssumedUnit;
   }
+  return {};
 }
 
 }  // namespace yuragi::daemon::tools::csv

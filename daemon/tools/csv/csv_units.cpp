@@ -1,6 +1,7 @@
 #include "daemon/tools/csv/csv_units.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct NamedUnit {
   std::string_view plain;  ///< in lower case, without punctuation
   Unit unit;
 };
+
+/// Beaufort's scale by its formula of 1946: the speed in the middle of a force is 0.836 m/s times its power 1.5.
+constexpr Unit kBeaufort{"Bft", 0.836, 0.0, 1.5};
 
 /// The words of drivers/decode, in lower case and without punctuation, and those of tables only.
 std::span<const NamedUnit> speed_units() {
@@ -31,6 +35,7 @@ std::span<const NamedUnit> speed_units() {
       units.push_back({kPlainWords[i], {unit.name, unit.metres_per_second}});
     }
     units.push_back({"01ms", {"0.1 m/s", 0.1}});
+    for (const std::string_view word : {"bft", "bf", "beaufort"}) units.push_back({word, kBeaufort});
     return units;
   }();
   return kUnits;
@@ -38,11 +43,33 @@ std::span<const NamedUnit> speed_units() {
 
 constexpr Unit kDegrees{"degrees"};
 constexpr Unit kRadians{"radians", 1.0 / kRadPerDeg};
-constexpr std::array kDirectionUnits = {
-    NamedUnit{"deg", kDegrees},          NamedUnit{"degree", kDegrees},      NamedUnit{"degrees", kDegrees},
-    NamedUnit{"degt", kDegrees},         NamedUnit{"degn", kDegrees},        NamedUnit{"degfromn", kDegrees},
-    NamedUnit{"degreesnorth", kDegrees}, NamedUnit{"degreestrue", kDegrees}, NamedUnit{"rad", kRadians},
-    NamedUnit{"radian", kRadians},       NamedUnit{"radians", kRadians}};
+constexpr Unit kTensOfDegrees{"tens of degrees", 10.0};
+constexpr std::array kDirectionUnits = {NamedUnit{"deg", kDegrees},
+                                        NamedUnit{"degree", kDegrees},
+                                        NamedUnit{"degrees", kDegrees},
+                                        NamedUnit{"degt", kDegrees},
+                                        NamedUnit{"degn", kDegrees},
+                                        NamedUnit{"degfromn", kDegrees},
+                                        NamedUnit{"degreesnorth", kDegrees},
+                                        NamedUnit{"degreestrue", kDegrees},
+                                        NamedUnit{"rad", kRadians},
+                                        NamedUnit{"radian", kRadians},
+                                        NamedUnit{"radians", kRadians},
+                                        NamedUnit{"degm", kDegrees},
+                                        NamedUnit{"grad", kDegrees},
+                                        NamedUnit{"degres", kDegrees},
+                                        NamedUnit{"gradi", kDegrees},
+                                        NamedUnit{"graden", kDegrees},
+                                        NamedUnit{"grados", kDegrees},
+                                        NamedUnit{"compass", kDegrees},
+                                        NamedUnit{"compasspoint", kDegrees},
+                                        NamedUnit{"cardinal", kDegrees},
+                                        NamedUnit{"compasspoints", kDegrees},
+                                        NamedUnit{"10sdeg", kTensOfDegrees},
+                                        NamedUnit{"10deg", kTensOfDegrees},
+                                        NamedUnit{"10degrees", kTensOfDegrees},
+                                        NamedUnit{"10sofdegrees", kTensOfDegrees},
+                                        NamedUnit{"tensofdegrees", kTensOfDegrees}};
 
 constexpr Unit kCelsius{"C"};
 constexpr Unit kFahrenheit{"F", 5.0 / 9.0, -32.0 * 5.0 / 9.0};
@@ -119,12 +146,24 @@ std::span<const NamedUnit> units_of(Dimension dimension) {
 
 }  // namespace
 
+double in_base(const Unit& unit, double value) {
+  const double power = unit.exponent == 1.0 || value < 0.0 ? value : std::pow(value, unit.exponent);
+  return unit.factor * power + unit.offset;
+}
+
 std::optional<Unit> find_unit(Dimension dimension, std::string_view text) {
   const std::string plain = joined(words_of(text));
   for (const NamedUnit& each : units_of(dimension)) {
     if (each.plain == plain) return each.unit;
   }
   return std::nullopt;
+}
+
+bool is_any_unit(std::string_view text) {
+  return std::ranges::any_of(
+      std::array{Dimension::kTime, Dimension::kSpeed, Dimension::kDirection, Dimension::kTemperature,
+                 Dimension::kPressure, Dimension::kHumidity, Dimension::kRain, Dimension::kRainRate},
+      [text](Dimension dimension) { return find_unit(dimension, text).has_value(); });
 }
 
 Unit base_unit(Dimension dimension) {

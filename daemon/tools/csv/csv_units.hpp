@@ -21,16 +21,23 @@ enum class Dimension : std::uint8_t {
   kRainRate,     ///< in mm/h
 };
 
-/// A unit: value * factor + offset is in the unit that Dimension names.
+/// A unit, which in_base() converts to the one that Dimension names.
 struct Unit {
   std::string_view name;  ///< of static storage duration
   double factor = 1.0;
   double offset = 0.0;
+  double exponent = 1.0;  ///< of Beaufort's scale 1.5
 };
+
+/// factor * value^exponent + offset. A value below zero has no other power than itself.
+double in_base(const Unit& unit, double value);
 
 /// Returns the unit that a text names, in any case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nullopt
 /// if it is not a unit of this dimension. Thread-safe: yes.
 std::optional<Unit> find_unit(Dimension dimension, std::string_view text);
+
+/// Returns true for a unit of any dimension.
+bool is_any_unit(std::string_view text);
 
 /// The unit of speed that a text is.
 inline std::optional<Unit> find_speed_unit(std::string_view text) {

@@ -61,9 +61,10 @@ std::optional<Number> parse_number(std::string_view text, Dimension dimension) {
 
 bool is_missing_word(std::string_view text) {
   static constexpr auto kWords = std::to_array<std::string_view>(
-      {"",     "nan",      "na",          "n/a",     "null",    "none",   "m",       "mm",      "vrb",   "var",
-       "calm", "variable", "unavailable", "unknown", "missing", "nodata", "no data", "invalid", "error", "\\n",
-       "*",    "**",       "***",         "?",       ".",       "#n/a",   "inf",     "-inf",    "ovr",   "undefined"});
+      {"",      "nan",  "na",        "n/a",         "null",    "none",    "m",      "mm",      "vrb",
+       "var",   "calm", "variable",  "unavailable", "unknown", "missing", "nodata", "no data", "invalid",
+       "error", "\\n",  "*",         "**",          "***",     "?",       ".",      "#n/a",    "inf",
+       "-inf",  "ovr",  "undefined", "静穏",        "×",       "///"});
   constexpr std::size_t kLongest = 12;
   if (text.size() > kLongest) return false;
   if (text.find_first_not_of('-') == std::string_view::npos || text.find_first_not_of('/') == std::string_view::npos)

@@ -9,8 +9,9 @@ namespace yuragi::daemon::tools::csv {
 
 // Text as people write it in headers and fields.
 
-/// The words of a name in lower case: "Wind Speed (km/h)" and "windSpeed_km_h" have wind, speed, km, h. German umlauts
-/// are written out; other signs beyond ASCII separate words.
+/// The words of a name in lower case: "Wind Speed (km/h)" and "windSpeed_km_h" have wind, speed, km, h. Umlauts are
+/// written out, accents left off, and the Japan Meteorological Agency's names translated; other signs beyond ASCII
+/// separate words.
 std::vector<std::string> words_of(std::string_view name);
 
 /// Words without anything between them.

@@ -309,7 +309,7 @@ TEST_F(CsvCommands, ImportTakesAFileWithoutAHeaderAndOneStationOfSeveral) {
   EXPECT_EQ(logged[1].reading.direction_deg, 270.0);
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--zone", "Mars/Olympus"},
                                                 {"--where", "station"},
-                                                {"--gust-unit", "bft"},
+                                                {"--gust-unit", "furlongs"},
                                                 {"--start", "noon"}}) {
     std::vector<std::string> arguments = {"import", path("a.csv"), "-o", path("b.windlog")};
     arguments.insert(arguments.end(), wrong.begin(), wrong.end());

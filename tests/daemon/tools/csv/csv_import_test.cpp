@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <random>
 #include <sstream>
 
@@ -496,6 +497,227 @@ TEST(CsvImport, OfTheFinseSonicNeedsNoOptions) {
   EXPECT_NEAR(sum / 18'000.0, 7.02, 0.005);
   EXPECT_NEAR(max, 11.27, 0.005);
   EXPECT_EQ(last.mono, MonoTime{1'799'900ms});
+}
+
+/// The speed of the first row, and the failure.
+Imported import_speed(const std::string& name, const std::string& unit_row, const std::string& value,
+                      const ImportOptions& options = {}) {
+  return import_text("time," + name + "\n" + (unit_row.empty() ? "" : "s," + unit_row + "\n") + "0," + value + "\n",
+                     options);
+}
+
+TEST(CsvImport, ReadsTheRowOfUnitsWhole) {
+  for (const auto& [word, metres_per_second] : std::map<std::string, double>{{"kilometers/hour", 1.0 / 3.6},
+                                                                             {"knts", 1852.0 / 3600.0},
+                                                                             {"mi/hr", 0.44704},
+                                                                             {"feet/second", 0.3048},
+                                                                             {"meter/sec", 1.0},
+                                                                             {"Metres/Second", 1.0},
+                                                                             {"dm/s", 0.1}}) {
+    const auto imported = import_speed("WS", word, "10");
+    ASSERT_EQ(imported.readings.size(), 1U) << word << imported.failure;
+    EXPECT_NEAR(imported.readings[0].speed_m_s, 10.0 * metres_per_second, 1e-12) << word;
+  }
+  const auto beaufort = import_speed("WS", "Bft", "4");
+  ASSERT_EQ(beaufort.readings.size(), 1U) << beaufort.failure;
+  EXPECT_NEAR(beaufort.readings[0].speed_m_s, 0.836 * 8.0, 1e-12);
+}
+
+TEST(CsvImport, AWordThatIsNoKnownUnitIsAskedFor) {
+  EXPECT_THAT(import_speed("WS", "furlongs", "10").failure, HasSubstr("the unit \"furlongs\" of column \"WS\""));
+  EXPECT_THAT(import_speed("Wind Speed (furlongs)", "", "10").failure,
+              HasSubstr("the unit \"furlongs\" of column \"Wind Speed (furlongs)\""));
+  ImportOptions options;
+  options.unit = find_speed_unit("kn");
+  EXPECT_EQ(import_speed("WS", "furlongs", "10", options).failure, "");
+  EXPECT_EQ(import_speed("Wind Speed (10 min avg)", "", "10").failure, "") << "no unit, but a remark";
+
+  const std::string header = "time,speed,Wind Direction (pies)\n";
+  EXPECT_THAT(import_text(header + "0,1,90\n").failure, HasSubstr("\"pies\""));
+  const auto tens = import_text("time,speed,Wind Dir (10s deg)\n0,1,36\n1,1,9\n");
+  ASSERT_EQ(tens.readings.size(), 2U) << tens.failure;
+  EXPECT_EQ(tens.readings[0].direction_deg, 0.0);
+  EXPECT_EQ(tens.readings[1].direction_deg, 90.0);
+}
+
+TEST(CsvImport, ADirectionIsNoSpeed) {
+  EXPECT_THAT(import_text("time,Wind (deg)\n0,90\n").failure, HasSubstr("no column looks like a wind speed"));
+}
+
+TEST(CsvImport, ARowOfDataIsNoHeader) {
+  const std::string bytes =
+      "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,FF,fa,ff\n"
+      "2018-02-14T15:55:08.044Z,2,130306,3,255,8,09,45,00,F,fa,ff\n";
+  EXPECT_THAT(import_text(bytes).failure, HasSubstr("no header"));
+  // The first line that is above a row of its columns is offered.
+  const auto preamble = import_text(
+      "Site,hill,,,\nLogger,CR1000,serial,12,\nWhen,Spd80mN,Dir78mS,Spare A,Spare B\n"
+      "2018-07-20T14:00:00Z,5.5,270,1,1\n");
+  EXPECT_THAT(preamble.failure, HasSubstr("When, Spd80mN, Dir78mS"));
+  // A legend names a time and a wind as well.
+  const auto legend = import_text(
+      "time,when the wind was measured\nwind speed,the mean of 10 minutes\ntime,wind speed,direction\n"
+      "2018-07-20T14:00:00Z,5.5,270\n");
+  ASSERT_EQ(legend.readings.size(), 1U) << legend.failure;
+  EXPECT_EQ(legend.readings[0].direction_deg, 270.0);
+}
+
+TEST(CsvImport, FurtherColumnsThanTheGivenHeaderAreIgnored) {
+  ImportOptions options;
+  options.header = {"time", "speed"};
+  const auto imported = import_text("2018-07-20T14:00:00Z,5.5,270,x\n", options);
+  ASSERT_EQ(imported.readings.size(), 1U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].speed_m_s, 5.5);
+}
+
+UtcTime utc(int year, int month, int day, int hour, int minute = 0) {
+  return UtcTime(std::chrono::sys_days(std::chrono::year(year) / month / day)) + std::chrono::hours(hour) +
+         std::chrono::minutes(minute);
+}
+
+TEST(CsvImport, ReadsDayOfYearWithHoursAndMinutesInOneNumber) {
+  std::string text = "Year,DOY,MST,Avg Wind Speed [m/s]\n";
+  for (int minute = 0; minute < 130; ++minute)
+    text += "2018,291," + std::to_string(minute / 60 * 100 + minute % 60) + ",2.5\n";
+  const auto imported = import_text(text);
+  ASSERT_EQ(imported.readings.size(), 130U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].time.utc, utc(2018, 10, 18, 7)) << "MST is seven hours behind";
+  EXPECT_EQ(imported.readings[61].time.utc, utc(2018, 10, 18, 8, 1));
+  EXPECT_EQ(imported.readings[129].time.mono, MonoTime{129min});
+}
+
+TEST(CsvImport, ReadsDayOfYearWithHours) {
+  const auto imported = import_text("year,doy,hour,speed\n2018,1,23,1\n2018,1,24,2\n2018,2,1,3\n");
+  ASSERT_EQ(imported.readings.size(), 3U) << imported.failure;
+  EXPECT_EQ(imported.readings[1].time.utc, utc(2018, 1, 2, 0));
+  EXPECT_EQ(imported.readings[2].time.utc, utc(2018, 1, 2, 1));
+}
+
+TEST(CsvImport, NumbersWithoutADateAreSecondsOnlyIfTheyCanBe) {
+  const auto failure = [](const std::string& name, std::initializer_list<const char*> times) {
+    std::string text = name + ",speed\n";
+    for (const char* const time : times) text += std::string(time) + ",2\n";
+    return import_text(text).failure;
+  };
+  EXPECT_THAT(failure("time", {"0", "1", "2", "59", "100", "101"}), HasSubstr("hours and minutes"));
+  EXPECT_THAT(failure("time", {"22", "23", "24", "1", "2"}), HasSubstr("they begin again"));
+  EXPECT_THAT(failure("time", {"2018", "2018", "2018", "2018"}), HasSubstr("do not grow"));
+  EXPECT_THAT(failure("time", {"1", "2", "9", "40", "41", "200.5"}), HasSubstr("uneven"));
+  EXPECT_EQ(failure("time", {"0", "0.1", "0.2", "0.3", "0.4"}), "");
+  EXPECT_EQ(failure("time_s", {"1", "2", "9", "40", "41", "200.5"}), "") << "its name states it";
+}
+
+TEST(CsvImport, PutsATypicalYearOnOneYear) {
+  const auto imported = import_text(
+      "Date (MM/DD/YYYY),Time (HH:MM),Wspd (m/s)\n01/31/1988,23:00,1\n01/31/1988,24:00,2\n02/01/1979,01:00,3\n"
+      "02/28/1979,24:00,4\n03/01/1983,01:00,5\n12/31/1985,23:00,6\n12/31/1985,24:00,7\n");
+  ASSERT_EQ(imported.readings.size(), 7U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].time.utc, utc(1989, 1, 31, 23));
+  EXPECT_EQ(imported.readings[1].time.utc, utc(1989, 2, 1, 0));
+  EXPECT_EQ(imported.readings[2].time.utc, utc(1989, 2, 1, 1));
+  EXPECT_EQ(imported.readings[4].time.utc, utc(1989, 3, 1, 1));
+  EXPECT_EQ(imported.readings[6].time.utc, utc(1990, 1, 1, 0)) << "the last hour of the year";
+  EXPECT_THAT(imported.report.notes, testing::Contains(HasSubstr("a typical year")));
+  // The change to winter time is none.
+  const auto winter =
+      import_text("time,speed\n2021-10-31 01:30,1\n2021-10-31 02:30,2\n2021-10-31 02:00,3\n2021-10-31 03:00,4\n");
+  EXPECT_THAT(winter.report.notes, testing::Not(testing::Contains(HasSubstr("a typical year"))));
+}
+
+TEST(CsvImport, RowsThatAreLeftOutAreCountedByReason) {
+  const auto imported = import_text(
+      "time,speed\n2021-10-31T01:00Z,1\n2021-10-31T01:01Z,x\n2021-10-31T01:02Z,y\n2021-10-31T00:59Z,2\n"
+      "2021-10-31T01:03Z\n");
+  EXPECT_EQ(imported.report.refusals,
+            (std::map<std::string, std::size_t>{
+                {"fewer fields than the header", 1}, {"not a number in speed", 2}, {"time goes back", 1}}));
+}
+
+TEST(CsvImport, ATrackOfAGpsIsNoWind) {
+  const std::string track = "time,lat,lon,ele,speed,course\n2021-10-31T01:00Z,52.1,13.1,40,1.4,90\n";
+  EXPECT_THAT(import_text(track).failure, HasSubstr("GPS"));
+  EXPECT_EQ(import_text(track, with_column(Role::kSpeed, "speed")).failure, "");
+}
+
+TEST(CsvImport, KnowsGustsInOtherLanguages) {
+  for (const char* const name : {"Böe(km/h)", "Rafale (km/h)", "Raffica (km/h)", "Racha (km/h)", "Windstoot (km/h)"}) {
+    const auto imported = import_text("time,Wind (km/h)," + std::string(name) + "\n0,3.6,7.2\n");
+    ASSERT_EQ(imported.readings.size(), 1U) << name << imported.failure;
+    EXPECT_EQ(imported.readings[0].gust_m_s, 2.0) << name;
+  }
+}
+
+TEST(CsvImport, ReadsTheChannelsOfAnNrgLogger) {
+  const std::string header = "Timestamp\tCh1_Samples_V\tCh12_Samples_Deg\tCh101_Samples_m/s\tCh401_Samples_m/s\n";
+  const std::string row = "2024-01-11T13:39:30Z\t12.5\t336.6\t1.6\t1.8\n";
+  const auto paired = import_text("Channel:\t12\nUnits:\tDeg\nGust Source Channel:\t401\n\n" + header + row);
+  ASSERT_EQ(paired.readings.size(), 1U) << paired.failure;
+  EXPECT_EQ(paired.readings[0].speed_m_s, 1.8);
+  EXPECT_EQ(paired.readings[0].direction_deg, 336.6);
+  const auto first = import_text("Channel:\t12\nUnits:\tDeg\n\n" + header + row);
+  ASSERT_EQ(first.readings.size(), 1U) << first.failure;
+  EXPECT_EQ(first.readings[0].speed_m_s, 1.6);
+}
+
+TEST(CsvImport, ReadsEnergyPlusWeather) {
+  std::string text =
+      "LOCATION,Berlin,-,DEU,TMY,103840,52.47,13.4,1.0,49.0\nDESIGN CONDITIONS,0\nDATA PERIODS,1,1,Data\n";
+  const auto row = [](int hour, double direction_deg, double speed_m_s) {
+    std::string line = "1999,1,1," + std::to_string(hour) + ",60,?9?9,-1.5,-3.0,80,101300";
+    for (int field = 10; field < 20; ++field) line += ",0";
+    return line + "," + std::to_string(direction_deg) + "," + std::to_string(speed_m_s) + ",5,5,16,77777\n";
+  };
+  text += row(1, 250.0, 3.5) + row(24, 260.0, 4.5);
+  const auto imported = import_text(text);
+  ASSERT_EQ(imported.readings.size(), 2U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].time.utc, utc(1999, 1, 1, 0)) << "an hour ahead of UTC";
+  EXPECT_EQ(imported.readings[0].direction_deg, 250.0);
+  EXPECT_EQ(imported.readings[1].speed_m_s, 4.5);
+  EXPECT_EQ(imported.readings[1].time.utc, utc(1999, 1, 1, 23));
+  EXPECT_NEAR(*imported.quantities[0].pressure_hpa, 1013.0, 1e-9);
+}
+
+TEST(CsvImport, ReadsCumulusWithAGivenUnit) {
+  std::string row = "01/02/21,00:10,5.1,87,3.1,4.2,7.8,225";
+  for (int field = 8; field < 28; ++field) row += ",0.0";
+  EXPECT_THAT(import_text(row + "\n").failure, HasSubstr("CumulusMX writes no units"));
+  ImportOptions options;
+  options.unit = find_speed_unit("km/h");
+  const auto imported = import_text(row + "\n", options);
+  ASSERT_EQ(imported.readings.size(), 1U) << imported.failure;
+  EXPECT_DOUBLE_EQ(imported.readings[0].speed_m_s, 4.2 / 3.6);
+  EXPECT_DOUBLE_EQ(*imported.readings[0].gust_m_s, 7.8 / 3.6);
+  EXPECT_EQ(imported.readings[0].direction_deg, 225.0);
+  EXPECT_EQ(imported.readings[0].time.utc, utc(2021, 2, 1, 0, 10));
+}
+
+TEST(CsvImport, ReadsTheJapanMeteorologicalAgency) {
+  const auto imported = import_text(
+      "ダウンロードした時刻：2020/02/01 12:00:00\n\n,東京,東京,東京,東京,東京\n"
+      "年月日時,風速(m/s),風速(m/s),風速(m/s),風速(m/s),風速(m/s)\n,,,風向,風向,\n,,品質情報,,品質情報,均質番号\n"
+      "2020/1/1 1:00:00,2.9,8,北北西,8,1\n2020/1/1 2:00:00,0.2,8,静穏,8,1\n");
+  ASSERT_EQ(imported.readings.size(), 2U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].speed_m_s, 2.9);
+  EXPECT_EQ(imported.readings[0].direction_deg, 337.5);
+  EXPECT_EQ(imported.readings[1].direction_deg, std::nullopt);
+}
+
+TEST(CsvImport, ReadsPvgisAndNasaPower) {
+  const auto pvgis = import_text(
+      "Latitude (decimal degrees): 45.000\r\nmonth,year\r\n1,2016\r\n2,2007\r\n"
+      "time(UTC),T2m,RH,G(h),WS10m,WD10m,SP\r\n20160101:0000,4.4,91,0.0,1.52,201.0,100960.0\r\n"
+      "20160131:2300,4.4,91,0.0,1.62,202.0,100960.0\r\n20070201:0000,5.0,90,0.0,1.72,203.0,100960.0\r\n");
+  ASSERT_EQ(pvgis.readings.size(), 3U) << pvgis.failure;
+  EXPECT_EQ(pvgis.readings[0].speed_m_s, 1.52);
+  EXPECT_EQ(pvgis.readings[0].direction_deg, 201.0);
+  EXPECT_EQ(pvgis.readings[2].time.utc - pvgis.readings[1].time.utc, 1h) << "of another year";
+
+  const auto power = import_text(
+      "-BEGIN HEADER-\nNASA/POWER Hourly\nWS10M     MERRA-2 Wind Speed at 10 Meters (m/s)\n-END HEADER-\n"
+      "YEAR,MO,DY,HR,WS10M,WD10M\n2020,1,1,0,3.1,200.5\n2020,1,1,1,-999,-999\n");
+  ASSERT_EQ(power.readings.size(), 1U) << power.failure;
+  EXPECT_EQ(power.readings[0].speed_m_s, 3.1);
+  EXPECT_EQ(power.readings[0].time.utc, utc(2020, 1, 1, 0));
 }
 
 }  // namespace

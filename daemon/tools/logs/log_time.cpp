@@ -1,4 +1,4 @@
-#include "daemon/tools/csv/line_log_time.hpp"
+#include "daemon/tools/logs/log_time.hpp"
 
 #include <chrono>
 #include <string>
@@ -6,7 +6,7 @@
 #include "daemon/tools/csv/csv_words.hpp"
 #include "drivers/decode/text_fields.hpp"
 
-namespace yuragi::daemon::tools::csv {
+namespace yuragi::daemon::tools::logs {
 namespace {
 
 namespace decode = drivers::decode;
@@ -16,38 +16,39 @@ std::optional<Nanoseconds> time_of_day_in(std::string_view field) {
   if (field.size() < 6) return std::nullopt;
   const std::string text = "2000-01-01 " + std::string(field.substr(0, 2)) + ":" + std::string(field.substr(2, 2)) +
                            ":" + std::string(field.substr(4));
-  const auto time = parse_time(text, TimeFormat::kIso);
+  const auto time = csv::parse_time(text, csv::TimeFormat::kIso);
   constexpr std::chrono::sys_days kDay = std::chrono::year(2000) / 1 / 1;
   if (!time || time->utc_offset) return std::nullopt;
   return time->clock - UtcTime(kDay);
 }
 
 std::optional<std::chrono::sys_days> day_in(std::string_view day, std::string_view month, std::string_view year) {
-  const auto time =
-      parse_time(std::string(day) + "/" + std::string(month) + "/" + std::string(year), TimeFormat::kDayFirst);
+  const auto time = csv::parse_time(std::string(day) + "/" + std::string(month) + "/" + std::string(year),
+                                    csv::TimeFormat::kDayFirst);
   if (!time) return std::nullopt;
   return std::chrono::floor<std::chrono::days>(time->clock);
 }
 
 /// The field "c" of a tag block: seconds since 1970, or milliseconds.
-std::optional<Time> tag_block_time(std::string_view prefix) {
+std::optional<csv::Time> tag_block_time(std::string_view prefix) {
   for (const std::string_view key : {"\\c:", ",c:"}) {
     const auto at = prefix.find(key);
     if (at == std::string_view::npos) continue;
     const std::string_view rest = prefix.substr(at + key.size());
     const std::string_view number = rest.substr(0, rest.find_first_not_of("0123456789"));
-    if (const auto format = guess_count_format(number)) return parse_time(number, *format);
+    if (const auto format = csv::guess_count_format(number)) return csv::parse_time(number, *format);
   }
   return std::nullopt;
 }
 
-std::optional<Time> time_in(std::string_view text, TimeFormat format) {
-  if (format != TimeFormat::kAuto) return parse_time(text, format);
-  if (const auto compact = parse_time(text, TimeFormat::kCompact); compact && text.size() >= 12) return compact;
-  if (const auto count = guess_count_format(text)) {
-    return *count == TimeFormat::kSeconds ? std::nullopt : parse_time(text, *count);
+std::optional<csv::Time> time_in(std::string_view text, csv::TimeFormat format) {
+  if (format != csv::TimeFormat::kAuto) return csv::parse_time(text, format);
+  if (const auto compact = csv::parse_time(text, csv::TimeFormat::kCompact); compact && text.size() >= 12)
+    return compact;
+  if (const auto count = csv::guess_count_format(text)) {
+    return *count == csv::TimeFormat::kSeconds ? std::nullopt : csv::parse_time(text, *count);
   }
-  return parse_time(text, TimeFormat::kIso);
+  return csv::parse_time(text, csv::TimeFormat::kIso);
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ bool NmeaClock::set_time_of_day(Nanoseconds time_of_day) {
   return true;
 }
 
-std::optional<Time> leading_time(std::string_view prefix, TimeFormat format) {
+std::optional<csv::Time> leading_time(std::string_view prefix, csv::TimeFormat format) {
   if (const auto time = tag_block_time(prefix)) return time;
   constexpr std::string_view kAround = " \t,;|>[](){}\"'\x02";
   const auto begin = prefix.find_first_not_of(kAround);
@@ -93,10 +94,10 @@ std::optional<Time> leading_time(std::string_view prefix, TimeFormat format) {
   if (const auto time = time_in(prefix, format)) return time;
   // More can follow the time: a port, a priority.
   for (const char separator : {';', ',', '\t', ']', ')'}) {
-    const std::string_view first = without_blanks(prefix.substr(0, prefix.find(separator)));
+    const std::string_view first = csv::without_blanks(prefix.substr(0, prefix.find(separator)));
     if (const auto time = time_in(first, format)) return time;
   }
   return std::nullopt;
 }
 
-}  // namespace yuragi::daemon::tools::csv
+}  // namespace yuragi::daemon::tools::logs

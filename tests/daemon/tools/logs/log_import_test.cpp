@@ -1,15 +1,15 @@
 // Logs of messages: which line has which wind, and when. The whole way, with files, is tests/e2e/csv_formats_test.py.
+#include "daemon/tools/logs/log_import.hpp"
+
 #include <random>
 #include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "daemon/tools/csv/line_log_import.hpp"
-#include "daemon/tools/csv/line_log_message.hpp"
-#include "daemon/tools/csv/line_log_time.hpp"
+#include "daemon/tools/logs/log_time.hpp"
 
-namespace yuragi::daemon::tools::csv {
+namespace yuragi::daemon::tools::logs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -20,15 +20,15 @@ constexpr UtcTime kEvening{std::chrono::seconds(1'687'730'400)};  // 2023-06-25T
 struct ImportedLog {
   std::vector<wind::Reading> readings;
   std::vector<wind::StationQuantities> quantities;
-  ImportReport report;
+  csv::ImportReport report;
   std::string failure;
 };
 
-ImportedLog import_log(const std::string& text, const LineLogOptions& options = {}) {
+ImportedLog imported_from(const std::string& text, const LogOptions& options = {}) {
   ImportedLog imported;
   std::istringstream in(text);
-  Input input(in);
-  const auto report = import_line_log(
+  csv::Input input(in);
+  const auto report = import_log(
       input, "a.log", options,
       {.reading = [&](std::string_view, const wind::Reading& reading) { imported.readings.push_back(reading); },
        .quantities = [&](std::string_view,
@@ -41,7 +41,7 @@ ImportedLog import_log(const std::string& text, const LineLogOptions& options = 
   return imported;
 }
 
-TEST(LineLog, TheClockOfNmeaNeedsADateAndGoesOverMidnight) {
+TEST(LogImport, TheClockOfNmeaNeedsADateAndGoesOverMidnight) {
   NmeaClock clock;
   EXPECT_FALSE(clock.take("$GPGLL,,,,,235959.50,A"));
   EXPECT_FALSE(clock.take("$GPRMC,235959.00,V,,,,,,,250623,,")) << "not valid";
@@ -57,61 +57,61 @@ TEST(LineLog, TheClockOfNmeaNeedsADateAndGoesOverMidnight) {
   EXPECT_FALSE(clock.take("$WIMWV,1.0,R,1.0,M,A"));
 }
 
-TEST(LineLog, TimesStandBeforeMessagesInManyWays) {
+TEST(LogImport, TimesStandBeforeMessagesInManyWays) {
   for (const char* prefix : {"2023-06-25T22:00:00Z ", "2023-06-25 22:00:00, ", "[2023-06-25 22:00:00.000] ",
                              "1687730400 ", "(1687730400.000) can0 ", "1687730400000;A;", "\\s:x,c:1687730400*00\\",
                              "20230625 220000\t", "2023/06/25,22:00:00,"}) {
-    const auto time = leading_time(prefix, TimeFormat::kAuto);
+    const auto time = leading_time(prefix, csv::TimeFormat::kAuto);
     ASSERT_TRUE(time) << prefix;
     EXPECT_EQ(time->clock, kEvening) << prefix;
   }
   for (const char* prefix : {"", "x ", "12 ", "22:00:00 ", "3/4/2023 22:00 ", "wind: "}) {
-    EXPECT_FALSE(leading_time(prefix, TimeFormat::kAuto)) << prefix;
+    EXPECT_FALSE(leading_time(prefix, csv::TimeFormat::kAuto)) << prefix;
   }
-  EXPECT_TRUE(leading_time("25/06/2023 22:00:00 ", TimeFormat::kDayFirst));
+  EXPECT_TRUE(leading_time("25/06/2023 22:00:00 ", csv::TimeFormat::kDayFirst));
 }
 
-TEST(LineLog, OneSentenceOfSeveralIsTaken) {
+TEST(LogImport, OneSentenceOfSeveralIsTaken) {
   const std::string text =
       "$GPRMC,220000,A,,,,,,,250623,,\n$WIMWV,10,R,5.0,M,A\n$WIMWD,100,T,,M,,,5.0,M\n$GPRMC,220001,A,,,,,,,250623,,\n"
       "$WIMWV,20,R,6.0,M,A\n$WIMWD,110,T,,M,,,6.0,M\n$WIXDR,C,21.5,C,0\n";
-  const auto best = import_log(text);
+  const auto best = imported_from(text);
   ASSERT_EQ(best.readings.size(), 2U) << best.failure;
   EXPECT_EQ(best.readings[0].direction_deg, 100.0);
   EXPECT_EQ(best.readings[1].time.utc, kEvening + 1s);
   ASSERT_EQ(best.quantities.size(), 1U);
   EXPECT_EQ(best.quantities[0].air_temperature_c, 21.5);
   EXPECT_THAT(best.report.columns, testing::Contains(HasSubstr("not taken: MWV R of WI (2 of them")));
-  LineLogOptions options;
+  LogOptions options;
   options.sentence = "MWV R";
-  EXPECT_EQ(import_log(text, options).readings.at(1).direction_deg, 20.0);
-  EXPECT_EQ(import_log(text + "$WIMWV,30,R,7.0,M,A\n$WIMWV,40,R,7.0,M,A\n$WIMWV,50,R,7.0,M,A\n").readings.size(), 5U)
+  EXPECT_EQ(imported_from(text, options).readings.at(1).direction_deg, 20.0);
+  EXPECT_EQ(imported_from(text + "$WIMWV,30,R,7.0,M,A\n$WIMWV,40,R,7.0,M,A\n$WIMWV,50,R,7.0,M,A\n").readings.size(), 5U)
       << "a sentence that is said seldom is not the wind";
   options.sentence = "VWR";
-  EXPECT_THAT(import_log(text, options).failure, HasSubstr("VWR"));
+  EXPECT_THAT(imported_from(text, options).failure, HasSubstr("VWR"));
 }
 
-TEST(LineLog, WithoutATimeItSaysWhichOptionsHelp) {
+TEST(LogImport, WithoutATimeItSaysWhichOptionsHelp) {
   const std::string text = "$WIMWV,10,R,5.0,M,A\n$WIMWV,20,R,6.0,M,A*00\n$WIMWV,30,R,7.0,M,A\n";
-  EXPECT_THAT(import_log(text).failure, testing::AllOf(HasSubstr("--start"), HasSubstr("--interval")));
-  LineLogOptions options;
+  EXPECT_THAT(imported_from(text).failure, testing::AllOf(HasSubstr("--start"), HasSubstr("--interval")));
+  LogOptions options;
   options.start = kEvening;
   options.interval = 250ms;
-  const auto imported = import_log(text, options);
+  const auto imported = imported_from(text, options);
   ASSERT_EQ(imported.readings.size(), 2U) << "a wrong checksum is refused";
   EXPECT_EQ(imported.readings[1].time.utc, kEvening + 250ms);
-  EXPECT_THAT(import_log("hello\n").failure, HasSubstr("no line has a wind"));
+  EXPECT_THAT(imported_from("hello\n").failure, HasSubstr("no line has a wind"));
 }
 
-TEST(LineLog, IsToldFromATable) {
-  EXPECT_TRUE(looks_like_line_log({"$WIMWV,10,R,5.0,M,A", "$GPRMC,220000,A,,,,,,,250623,,", "# note"}));
-  EXPECT_TRUE(looks_like_line_log({"\x02Q,270,002.74,M,00,\x03"}));
-  EXPECT_TRUE(looks_like_line_log({"2023-06-25 22:00 speed=4.2 direction=270"}));
-  EXPECT_FALSE(looks_like_line_log({"time,speed,direction", "0,1,2", "1,2,3"}));
-  EXPECT_FALSE(looks_like_line_log({}));
+TEST(LogImport, IsToldFromATable) {
+  EXPECT_TRUE(looks_like_log({"$WIMWV,10,R,5.0,M,A", "$GPRMC,220000,A,,,,,,,250623,,", "# note"}, {}));
+  EXPECT_TRUE(looks_like_log({"\x02Q,270,002.74,M,00,\x03"}, {}));
+  EXPECT_TRUE(looks_like_log({"2023-06-25 22:00 speed=4.2 direction=270"}, {}));
+  EXPECT_FALSE(looks_like_log({"time,speed,direction", "0,1,2", "1,2,3"}, {}));
+  EXPECT_FALSE(looks_like_log({}, {}));
 }
 
-TEST(LineLog, OfHurtLinesEndsWithPlausibleReadingsInOrder) {
+TEST(LogImport, OfHurtLinesEndsWithPlausibleReadingsInOrder) {
   const std::string sound =
       "2023-06-25 22:00:00, $WIMWV,10,R,5.0,M,A*24\n$GPRMC,220000,A,,,,,,,250623,,\n\x02Q,270,002.74,M,00,\x03"
       "16\n"
@@ -128,7 +128,7 @@ TEST(LineLog, OfHurtLinesEndsWithPlausibleReadingsInOrder) {
       }
       if (text.empty()) break;
     }
-    const auto imported = import_log(text);
+    const auto imported = imported_from(text);
     MonoTime last{};
     for (const wind::Reading& reading : imported.readings) {
       EXPECT_TRUE(wind::is_plausible(reading));
@@ -139,4 +139,4 @@ TEST(LineLog, OfHurtLinesEndsWithPlausibleReadingsInOrder) {
 }
 
 }  // namespace
-}  // namespace yuragi::daemon::tools::csv
+}  // namespace yuragi::daemon::tools::logs

@@ -6,7 +6,7 @@
 #include "daemon/tools/csv/csv_time.hpp"
 #include "engine/base/time.hpp"
 
-namespace yuragi::daemon::tools::csv {
+namespace yuragi::daemon::tools::logs {
 
 /// The clock that a log of NMEA 0183 has in itself: RMC and ZDA have date and time, GLL and GGA the time of the day of
 /// the last date. Source: gpsd www/NMEA.adoc. Thread-safe: no.
@@ -27,6 +27,6 @@ class NmeaClock {
 /// The time that a logger wrote before a message: "2023-06-25 22:00:00.5,", "[1687730400.25] ", "1687730400153;A;", or
 /// the "c:" of an NMEA 4 tag block. Nullopt if it is not a time with a date. `format`: kAuto takes ISO 8601, digits and
 /// Unix times, but no dates of which day and month could be either.
-std::optional<Time> leading_time(std::string_view prefix, TimeFormat format);
+std::optional<csv::Time> leading_time(std::string_view prefix, csv::TimeFormat format);
 
-}  // namespace yuragi::daemon::tools::csv
+}  // namespace yuragi::daemon::tools::logs

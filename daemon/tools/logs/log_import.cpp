@@ -1,0 +1,278 @@
+#include "daemon/tools/logs/log_import.hpp"
+
+#include <algorithm>
+#include <istream>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "daemon/tools/csv/csv_input.hpp"
+#include "daemon/tools/csv/csv_lines.hpp"
+#include "daemon/tools/logs/log_time.hpp"
+#include "daemon/tools/logs/message_finder.hpp"
+#include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/count_text.hpp"
+
+namespace yuragi::daemon::tools::logs {
+namespace {
+
+namespace decode = drivers::decode;
+
+std::string_view text_of(csv::Lines& lines) {
+  const std::span<char> line = lines.line();
+  return {line.data(), line.size()};
+}
+
+/// The content of a log, before one of its sources is chosen.
+struct LogContents {
+  std::map<std::string, std::size_t, std::less<>> sources;  ///< readings with a speed, by source
+  std::size_t leading_times = 0;
+  std::size_t own_times = 0;
+  std::size_t messages = 0;
+  std::size_t lines = 0;
+  std::map<decode::Refusal, std::size_t> refusals;  ///< of messages without a wind
+  bool has_clock = false;
+};
+
+LogContents contents_of(std::istream& in, const LogOptions& options) {
+  LogContents contents;
+  csv::Lines lines(in, 0);
+  NmeaClock clock;
+  MessageFinder finder(options.table);
+  const auto count = [&](const std::optional<LogMessage>& message) {
+    if (!message) return;
+    if (!message->wind) ++contents.refusals[message->wind.error()];
+    if (!message->wind || !message->wind->speed_m_s) return;
+    ++contents.messages;
+    if (leading_time(message->prefix, options.table.time_format)) ++contents.leading_times;
+    if (message->time) ++contents.own_times;
+    constexpr std::size_t kMaxSources = 100;
+    const bool is_new = contents.sources.size() < kMaxSources;
+    if (is_new || contents.sources.contains(message->source)) ++contents.sources[message->source];
+  };
+  while (lines.next()) {
+    ++contents.lines;
+    if (clock.take(text_of(lines))) contents.has_clock = true;
+    count(finder.find(text_of(lines)));
+  }
+  count(finder.finish());
+  return contents;
+}
+
+/// Less is better: angles from north, from the device's own mark, with its motion taken out.
+int rank_of(std::string_view source) {
+  constexpr std::array<std::string_view, 8> kOrder = {"MWD", "MDA", "MWV R", "VWR", "MWV T", "VWT", "XDR", ""};
+  const auto* const found =
+      std::ranges::find_if(kOrder, [&](std::string_view name) { return source.starts_with(name); });
+  return static_cast<int>(found - kOrder.begin());
+}
+
+/// The best of those that the log has half as often as any, or more.
+std::string chosen_source(const LogContents& contents, const LogOptions& options) {
+  const auto is_wanted = [&](std::string_view source) {
+    return options.sentence.empty() || source.starts_with(options.sentence);
+  };
+  std::size_t most = 0;
+  for (const auto& [source, count] : contents.sources) {
+    if (is_wanted(source)) most = std::max(most, count);
+  }
+  std::string chosen;
+  for (const auto& [source, count] : contents.sources) {
+    if (!is_wanted(source) || 2 * count < most) continue;
+    const int rank = rank_of(source);
+    const bool is_better =
+        chosen.empty() || rank < rank_of(chosen) || (rank == rank_of(chosen) && count > contents.sources.at(chosen));
+    if (is_better) chosen = source;
+  }
+  return chosen;
+}
+
+/// Where the times of readings come from.
+enum class TimeSource : std::uint8_t { kStart, kLeading, kOwn, kClock };
+
+std::optional<TimeSource> time_source_of(const LogContents& contents, const LogOptions& options) {
+  if (options.start && options.interval) return TimeSource::kStart;
+  if (2 * contents.leading_times > contents.messages) return TimeSource::kLeading;
+  if (2 * contents.own_times > contents.messages) return TimeSource::kOwn;
+  if (contents.has_clock) return TimeSource::kClock;
+  return std::nullopt;
+}
+
+class LogImport {
+ public:
+  LogImport(const std::string& name, const LogOptions& options, const csv::Sinks& sinks, std::string source,
+            TimeSource time_source)
+      : name_(name),
+        options_(options),
+        sinks_(sinks),
+        source_(std::move(source)),
+        time_source_(time_source),
+        finder_(options.table) {}
+
+  Result<csv::ImportReport, Failure> run(std::istream& in) {
+    csv::Lines lines(in, 0);
+    while (lines.next()) {
+      const std::string_view line = text_of(lines);
+      clock_.take(line);
+      const auto message = finder_.find(line);
+      if (!message && finder_.has_absorbed()) continue;
+      if (!take_message(message, lines.number())) return Failure{report_.first_refusals.front()};
+    }
+    if (lines.is_too_long()) return csv::too_long_line(name_, lines.number() + 1);
+    if (const auto last = finder_.finish(); last && !take_message(last, lines.number()))
+      return Failure{report_.first_refusals.front()};
+    report_.columns = finder_.describe(source_);
+    if (same_time_ > 0) {
+      report_.notes.push_back("the same time as the one before: " + count_text(same_time_, "reading") +
+                              ", kept a nanosecond apart");
+    }
+    if (passed_over_ > 0) report_.notes.push_back("something else: " + count_text(passed_over_, "line"));
+    return std::move(report_);
+  }
+
+ private:
+  /// False if it is refused, and that ends the import.
+  bool take_message(const std::optional<LogMessage>& message, std::size_t line) {
+    if (!message || (message->source != source_ && !message->quantities)) {
+      ++passed_over_;
+      return true;
+    }
+    if (message->source != source_) {
+      take_quantities(*message);
+      return true;
+    }
+    ++report_.rows;
+    const auto taken = take(*message);
+    if (taken) return true;
+    report_.refuse(name_, line, taken.error());
+    return !options_.table.strict;
+  }
+
+  Result<UtcTime, csv::RowRefusal> time_of(const LogMessage& message) {
+    if (time_source_ == TimeSource::kStart)
+      return *options_.start + *options_.interval * static_cast<std::int64_t>(report_.rows - 1);
+    if (time_source_ == TimeSource::kClock) {
+      if (!clock_.now()) return csv::RowRefusal{"no time has been received yet"};
+      return *clock_.now();
+    }
+    const bool is_leading = time_source_ == TimeSource::kLeading;
+    const auto written = is_leading ? leading_time(message.prefix, options_.table.time_format) : message.time;
+    if (!written) return csv::RowRefusal{is_leading ? "no time before the message" : "no time in the message"};
+    if (written->utc_offset) return written->clock - *written->utc_offset;
+    const auto utc = options_.table.zone.value_or(csv::Zone()).to_utc(written->clock, last_);
+    if (!utc) return csv::RowRefusal{"a time that does not exist in the zone; check --zone"};
+    return *utc;
+  }
+
+  Result<void, csv::RowRefusal> take(const LogMessage& message) {
+    if (!message.wind) return csv::RowRefusal{std::string(name_of(message.wind.error()))};
+    if (!message.wind->speed_m_s) return csv::RowRefusal{"no speed"};
+    const auto utc = time_of(message);
+    if (!utc) return utc.error();
+    if (last_ && *utc < *last_) return csv::RowRefusal{"time goes back"};
+    wind::Reading reading;
+    reading.time = {MonoTime(*utc - first_.value_or(*utc)), *utc};
+    reading.speed_m_s = *message.wind->speed_m_s;
+    reading.direction_deg = message.wind->direction_deg;
+    reading.gust_m_s = message.wind->gust_m_s;
+    if (message.wind->status == decode::DecodedStatus::kUncertain) reading.quality = wind::ReadingQuality::kUncertain;
+    if (!drivers::windlog::is_recordable(reading)) return csv::RowRefusal{"time out of range"};
+    if (last_ == *utc) ++same_time_;
+    if (!first_) first_ = *utc;
+    last_ = *utc;
+    last_time_ = reading.time;
+    sinks_.reading(options_.table.sensor, reading);
+    ++report_.taken;
+    take_quantities(message);
+    return {};
+  }
+
+  /// At the time of the last reading.
+  void take_quantities(const LogMessage& message) {
+    if (!message.quantities || report_.taken == 0) return;
+    wind::StationQuantities quantities = *message.quantities;
+    quantities.time = last_time_;
+    const auto plausible = wind::plausible_part(quantities);
+    if (!plausible) return;
+    ++report_.quantities;
+    if (sinks_.quantities) sinks_.quantities(options_.table.sensor, *plausible);
+  }
+
+  const std::string& name_;
+  const LogOptions& options_;
+  const csv::Sinks& sinks_;
+  std::string source_;
+  TimeSource time_source_;
+  MessageFinder finder_;
+  NmeaClock clock_;
+  std::optional<UtcTime> first_;
+  std::optional<UtcTime> last_;
+  Instant last_time_;
+  std::size_t same_time_ = 0;
+  std::size_t passed_over_ = 0;
+  csv::ImportReport report_;
+};
+
+}  // namespace
+
+bool looks_like_log(const std::vector<std::string>& lines, const csv::ImportOptions& options) {
+  std::size_t messages = 0;
+  std::size_t others = 0;
+  MessageFinder finder(options);
+  for (const std::string& line : lines) {
+    if (line.empty() || line.starts_with('#')) continue;
+    const auto message = finder.find(line);
+    if (finder.has_absorbed() && !message) continue;
+    ++(message ? messages : others);
+  }
+  if (finder.finish()) ++messages;
+  return messages > others;
+}
+
+Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::string& name, const LogOptions& options,
+                                              const csv::Sinks& sinks) {
+  const LogContents contents = contents_of(input.first_pass(), options);
+  if (contents.messages == 0) {
+    std::string refused;
+    for (const auto& [why, count] : contents.refusals)
+      refused += fmt::format("{}{} {}", refused.empty() ? "; messages without a wind: " : ", ", count, name_of(why));
+    return Failure{fmt::format("{}: no line has a wind{}; {} are understood", name, refused, kMessagesThatAreFound)};
+  }
+  const std::string source = chosen_source(contents, options);
+  if (source.empty()) return Failure{name + ": no line has the sentence " + options.sentence + " with a speed"};
+  const auto time_source = time_source_of(contents, options);
+  if (!time_source) {
+    return Failure{fmt::format(
+        "{}: {} from {} in {}, but no time was found, neither before the messages, nor in them, nor in RMC or ZDA; add "
+        "--start 2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, if a time stands before "
+        "them)",
+        name, count_text(contents.sources.at(source), "wind"), source, count_text(contents.lines, "line"))};
+  }
+  auto report = LogImport(name, options, sinks, source, *time_source).run(input.second_pass());
+  if (!report) return report;
+  std::vector<std::string> columns = {fmt::format(
+      "{}: {} in {}", source, count_text(contents.sources.at(source), "wind"), count_text(contents.lines, "line"))};
+  columns.insert(columns.end(), report->columns.begin(), report->columns.end());
+  for (const auto& [each, count] : contents.sources) {
+    if (each != source) columns.push_back(fmt::format("not taken: {} ({} of them; --sentence)", each, count));
+  }
+  const std::string zone = fmt::format(", in {} if it names no zone", options.table.zone.value_or(csv::Zone()).name());
+  switch (*time_source) {
+    case TimeSource::kStart:
+      columns.emplace_back("time from --start and --interval");
+      break;
+    case TimeSource::kLeading:
+      columns.push_back("time from before the messages" + zone);
+      break;
+    case TimeSource::kOwn:
+      columns.push_back("time from the messages" + zone);
+      break;
+    case TimeSource::kClock:
+      columns.emplace_back("time from RMC, ZDA, GLL or GGA, which may be up to their interval old");
+      break;
+  }
+  report->columns = std::move(columns);
+  return report;
+}
+
+}  // namespace yuragi::daemon::tools::logs
