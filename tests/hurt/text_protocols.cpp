@@ -250,6 +250,16 @@ Message make_station_push(Chance& chance) {
                       direction_deg, speed / 100.0, gust / 100.0),
           wind_of(speed / 100.0 * kMetresPerSecondPerMph, direction_deg, gust / 100.0 * kMetresPerSecondPerMph)};
 }
+/// A form of WSLink: metres per second.
+Message make_ws_link_push(Chance& chance) {
+  const int speed = chance.between(0, 500);
+  const int gust = chance.between(speed, 600);
+  const int direction_deg = chance.between(0, 359);
+  return {
+      fmt::format("wsid=home&wspw=hidden&t1cn=1&t1tem=18.4&t1hum=65&t1wdir={}&t1ws={:.1f}&t1wgust={:.1f}&rbar=1013.2",
+                  direction_deg, speed / 10.0, gust / 10.0),
+      wind_of(speed / 10.0, direction_deg, gust / 10.0)};
+}
 LineWinds station_push_winds(std::string_view bytes) {
   const auto push = drivers::decode::network::decode_station_push(bytes);
   if (!push || !push->wind) return {};
@@ -347,6 +357,10 @@ constexpr std::array kTextProtocols = {
     Protocol{.name = "Ecowitt push",
              .most_false_of_a_million = 42'000,
              .make = make_station_push,
+             .winds_in = station_push_winds},
+    Protocol{.name = "WSLink push",
+             .most_false_of_a_million = 53'000,
+             .make = make_ws_link_push,
              .winds_in = station_push_winds},
 };
 
