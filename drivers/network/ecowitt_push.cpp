@@ -1,10 +1,11 @@
 // Weather stations that push their values to a server of the user's choosing: gateways and consoles by Fine Offset
 // (Ecowitt, Froggit, Ambient Weather and their other names) with a "customized" upload, and all others that use the
-// protocol of Weather Underground (drivers/SOURCES.md S9.3). This is the server.
+// protocol of Weather Underground or WSLink (drivers/SOURCES.md S9.3). This is the server.
 //
 //   POST /data/report/                                      a form as the body                   Ecowitt
 //   GET  /weatherstation/updateweatherstation.php?ID=...    a form behind the question mark      Weather Underground
 //   GET  /data/report/?PASSKEY=...                          the same                             Ambient Weather
+//   GET  /data/upload.php?wsid=...                          the same                             WSLink
 //
 // Both kinds are accepted at any path, unless one is set. An accepted push gets the answer 200; an answer from 400 on
 // has one line about what is wrong. The user sets who may send, because nothing in a push proves its sender.
@@ -70,12 +71,12 @@ const Fields<EcowittPushKeys> kEcowittPushFields = {
       .default_value = std::string(""),
       .help = "the path to accept, as set in the gateway: /data/report/; empty: any"},
      &EcowittPushKeys::path},
-    Parameter{
-        .name = "station_key",
-        .default_value = Secret(),
-        .help =
-            "the station to accept: its PASSKEY (Ecowitt, Ambient Weather) or ID (Wunderground); empty: the first one "
-            "that pushes, until it is silent, with a warning if there are others; no log and no recording shows it"},
+    Parameter{.name = "station_key",
+              .default_value = Secret(),
+              .help = "the station to accept: its PASSKEY (Ecowitt, Ambient Weather), ID (Wunderground) or wsid "
+                      "(WSLink); empty: the "
+                      "first one that pushes, until it is silent, with a warning if there are others; no log and no "
+                      "recording shows it"},
     {{"silence", "s", 300.0, 0.1, 86400.0,
       "without wind for this long, and for five times its usual interval, the station counts as silent"},
      &EcowittPushKeys::silence,
@@ -97,6 +98,9 @@ constexpr std::string_view kEcowittPushSetup =
     "  Port                 8090, or what `port` is set to\n"
     "  Upload Interval      16 s, the interval of most anemometers, or the minimum that can be set: of the\n"
     "                       gusts between two pushes only the strongest is reported\n"
+    "\n"
+    "A console with WSLink (Bresser, Garni, Ventus): API type WSLink, server URL this machine's address and port\n"
+    "without https, station ID and key any text. A console that pushes by https alone needs a proxy in between.\n"
     "\n"
     "Set `host` and `from`: no gateway can reach 127.0.0.1. Open the port in the firewall.\n";
 
@@ -234,8 +238,8 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const auto push = decode::network::decode_station_push(form);
     if (!push) {
       trouble_ = fmt::format(
-          "the push of {} cannot be used ({}): choose the protocol Ecowitt; or Wunderground, with a question mark at "
-          "the end of its path",
+          "the push of {} cannot be used ({}): choose the protocol Ecowitt or WSLink; or Wunderground, with a question "
+          "mark at the end of its path",
           sender, name_of(push.error()));
       return PushRefusal{push.error(), {400, fmt::format("no values of a station ({})", name_of(push.error()))}};
     }
@@ -357,7 +361,8 @@ Result<sensor::SimulatedDevice, Failure> ecowitt_push_simulated(const ParameterV
 extern const sensor::DriverDescription kEcowittPushDriver;
 const sensor::DriverDescription kEcowittPushDriver{
     .name = "ecowitt-push",
-    .summary = "stations that push their values to this machine by HTTP: Ecowitt, Ambient Weather, Wunderground",
+    .summary =
+        "stations that push their values to this machine by HTTP: Ecowitt, Ambient Weather, Wunderground, WSLink",
     .parameters = kEcowittPushFields.parameters(),
     .open = open_ecowitt_push,
     .endpoints = ecowitt_push_endpoints,

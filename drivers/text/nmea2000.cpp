@@ -1,6 +1,6 @@
 // Wind of an NMEA 2000 bus (PGN 130306): from a CAN interface of the kernel's, or as gateways and programs write it in
-// lines: the RAW mode of Yacht Devices' gateways, JSON of canboat's analyzer, candump of can-utils. The formats are
-// described with their decoders: drivers/decode/marine.
+// lines: the RAW mode of Yacht Devices' gateways, N2K ASCII of Actisense's, canboat's plain lines, JSON of its
+// analyzer, candump of can-utils. The formats are described with their decoders: drivers/decode/marine.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -21,7 +21,6 @@ using decode::marine::AngleUnit;
 using decode::marine::BusLineOptions;
 
 constexpr std::array<std::string_view, 5> kNmea2000Transports = {"serial", "tcp", "udp", "file", "can"};
-constexpr std::array<std::string_view, 4> kNmea2000Formats = {"auto", "yacht-devices", "canboat", "candump"};
 constexpr std::array<std::string_view, 3> kAngleUnits = {"auto", "deg", "rad"};
 /// Of an identifier, the PGN of the wind; its priority and the sender's address do not matter.
 constexpr bus::CanFilter kWindFrames = {.identifier = decode::marine::kWindDataPgn << 8U, .mask = 0x3FFFFU << 8U};
@@ -43,8 +42,9 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
     {{.name = "format",
       .default_value = std::string("auto"),
       .help = "yacht-devices: RAW mode of YDWG-02, YDEN-02, YDNU-02; canboat: JSON of canboat's analyzer (n2kd) or "
-              "canboatjs; candump: can-utils' lines; auto: detected for each line",
-      .choices = kNmea2000Formats},
+              "canboatjs; candump: can-utils' lines; canboat-plain: lines of canboat's actisense-serial and of logs of "
+              "Signal K servers; actisense: N2K ASCII of Actisense W2K-1 and others; auto: detected for each line",
+      .choices = decode::marine::kBusLineFormatNames},
      of_bus_lines(&BusLineOptions::format)},
     {{"address", "", std::int64_t{-1}, -1, 255,
       "accept only the wind of the device with this address on the bus; -1: any"},
@@ -132,7 +132,9 @@ Result<sensor::SimulatedDevice, Failure> nmea2000_simulated(const ParameterValue
 extern const sensor::DriverDescription kNmea2000Driver;
 const sensor::DriverDescription kNmea2000Driver{
     .name = "nmea2000",
-    .summary = "wind of an NMEA 2000 bus: a CAN interface, Yacht Devices' gateways in RAW mode, canboat, candump",
+    .summary =
+        "wind of an NMEA 2000 bus: a CAN interface, gateways of Yacht Devices (RAW) and Actisense (N2K ASCII), "
+        "canboat, candump",
     .parameters = kNmea2000Parameters,
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const Nmea2000SensorSettings settings = nmea2000_sensor_settings_of(values);

@@ -1,5 +1,6 @@
 #include "drivers/text/nmea2000_sensor.hpp"
 
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,6 +57,24 @@ std::string Nmea2000Sensor::reported_trouble() const {
 }
 
 std::string Nmea2000Sensor::advice(decode::Refusal why, std::string_view line) const {
+  using decode::marine::BusLineFormat;
+  using decode::marine::kBusLineFormatNames;
+  if (why == decode::Refusal::kMalformed || why == decode::Refusal::kTooShort) {
+    const auto format = decode::marine::bus_line_format_of(line);
+    const BusLineFormat accepted = settings_.lines.format;
+    const auto name_of = [](BusLineFormat of) { return kBusLineFormatNames.at(static_cast<std::size_t>(of)); };
+    const std::string where = describe(settings().address);
+    if (!format) {
+      return fmt::format(
+          "lines arrive from {}, but in no format of NMEA 2000 that is read (the first: \"{}\"): set the "
+          "gateway to one of {}",
+          where, shown(line), fmt::join(std::span(kBusLineFormatNames).subspan(1), ", "));
+    }
+    if (accepted != BusLineFormat::kAuto && *format != accepted) {
+      return fmt::format("lines arrive from {} in the format {}, not {} (the first: \"{}\"): set format = \"auto\"",
+                         where, name_of(*format), name_of(accepted), shown(line));
+    }
+  }
   if (why == decode::Refusal::kNotMine) {
     return Sensor::advice(why, line) + " (format, address, reference), and that PGN 130306 is on the bus";
   }

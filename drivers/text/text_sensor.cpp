@@ -34,14 +34,6 @@ constexpr int kForgottenBlocks = 64;
 constexpr std::size_t kShownOfLine = 60;
 constexpr Nanoseconds kForAges = 1h;
 
-/// The beginning of a line, with unprintable characters replaced.
-std::string shown(std::string_view line) {
-  std::string text(line.substr(0, kShownOfLine));
-  std::ranges::replace_if(
-      text, [](char c) { return c < ' ' || c == '\x7f'; }, '.');
-  return text;
-}
-
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
@@ -354,6 +346,13 @@ std::string Sensor::trouble_without_lines() const {
   const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
   return fmt::format("bytes arrive from {}, but no lines: check {}", where_,
                      is_serial ? "baud, data_bits and parity" : "that this is the device, and that it sends text");
+}
+
+std::string Sensor::shown(std::string_view line) {
+  std::string text(line.substr(0, kShownOfLine));
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c == '\x7f'; }, '.');
+  return text;
 }
 
 std::string Sensor::advice(decode::Refusal why, std::string_view line) const {

@@ -64,6 +64,8 @@ class Sensor : public sensor::ReopeningSensor {
   virtual std::string reported_trouble() const { return {}; }
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
+  /// The beginning of a line, as a status may show it.
+  static std::string shown(std::string_view line);
 
   const SensorSettings& settings() const noexcept { return settings_; }
 

@@ -32,6 +32,10 @@ void measure_cup(const Air& air, RegisterBank& registers) {
   registers.set(0x0000, kTenths * air.speed_m_s);
 }
 
+void measure_cup_at_0x16(const Air& air, RegisterBank& registers) {
+  registers.set(0x0016, kTenths * air.speed_m_s);
+}
+
 /// Renke RS-FXJT-N01: 0x0000 eight points, 0x0001 degrees.
 void measure_renke_vane(const Air& air, RegisterBank& registers) {
   registers.set(0x0000, compass_point_of(air.direction_deg, 8));
@@ -190,6 +194,7 @@ void measure_thies(const Air& air, RegisterBank& registers) {
 }
 
 constexpr std::array kRenkeCup = {Slave{1, 3, measure_cup}};
+constexpr std::array kCupAt0x16 = {Slave{1, 3, measure_cup_at_0x16}};
 constexpr std::array kRenkePair = {Slave{1, 3, measure_cup}, Slave{2, 3, measure_renke_vane}};
 constexpr std::array kDfrobotCup = {Slave{2, 3, measure_cup}};
 constexpr std::array kDfrobotPair = {Slave{2, 3, measure_cup}, Slave{3, 3, measure_sen0482}};
@@ -214,7 +219,7 @@ struct DeviceEntry {
   std::string_view name;
   std::span<const Slave> slaves;
 };
-constexpr std::array<DeviceEntry, 21> kModbusDevices = {{
+constexpr std::array<DeviceEntry, 22> kModbusDevices = {{
     {"renke-rs-fsjt-rs-fxjt-n01", kRenkePair},
     {"renke-rs-fsjt-n01", kRenkeCup},
     {"renke-rs-fxjt-n01", kVane},
@@ -236,6 +241,7 @@ constexpr std::array<DeviceEntry, 21> kModbusDevices = {{
     {"thies-clima-sensor-us", kThies},
     {"xunchip-xm8589", kRenkeCup},
     {"generic-rs485-cup", kRenkeCup},
+    {"generic-rs485-cup-0x16", kCupAt0x16},
 }};
 
 constexpr int kMaxSlaveId = 247;

@@ -21,6 +21,7 @@ const std::map<std::string, PushProtocol, std::less<>> kPushProtocols = {
     {"ecowitt", PushProtocol::kEcowitt},
     {"wunderground", PushProtocol::kWunderground},
     {"ambient", PushProtocol::kAmbient},
+    {"wslink", PushProtocol::kWsLink},
 };
 
 void simulate_ecowitt_push(EcowittPushCommand& command) {
@@ -43,14 +44,16 @@ void simulate_ecowitt_push(EcowittPushCommand& command) {
 extern const core::Command kEcowittPushCommand;
 const core::Command kEcowittPushCommand{[](CLI::App& app) {
   auto options = std::make_shared<EcowittPushCommand>();
-  CLI::App* command =
-      app.add_subcommand("ecowitt-push", "Ecowitt gateway, Ambient or Wunderground station, which pushes by HTTP");
+  CLI::App* command = app.add_subcommand(
+      "ecowitt-push", "Ecowitt gateway, or station of Ambient, Wunderground or WSLink, which pushes by HTTP");
   command->add_option("--to", options->to, "push to HOST:PORT")->capture_default_str();
   command->add_option("--protocol", options->protocol, "protocol of the pushes")
-      ->check(CLI::IsMember({"ecowitt", "wunderground", "ambient"}))
+      ->check(CLI::IsMember({"ecowitt", "wunderground", "ambient", "wslink"}))
       ->capture_default_str();
   command->add_option("--path", options->push.path, "the path that is set in the gateway; default: the usual one");
-  command->add_option("--station", options->push.station, "the station's PASSKEY; with wunderground, its ID")
+  command
+      ->add_option("--station", options->push.station,
+                   "the station's PASSKEY; with wunderground, its ID, with wslink, its wsid")
       ->capture_default_str();
   command->add_option("--interval", options->push.interval_s, "seconds between two pushes")
       ->check(CLI::Range(0.1, 3600.0))

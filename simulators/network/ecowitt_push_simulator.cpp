@@ -33,6 +33,7 @@ struct PushedWind {
 
 std::string usual_path(PushProtocol protocol) {
   if (protocol == PushProtocol::kWunderground) return "/weatherstation/updateweatherstation.php?";
+  if (protocol == PushProtocol::kWsLink) return "/data/upload.php?";
   return protocol == PushProtocol::kAmbient ? "/data/report/?" : "/data/report/";
 }
 
@@ -77,6 +78,25 @@ std::string wunderground_form(const std::string& station, const PushedWind* wind
       "&indoorhumidity=55&absbaromin=29.203&baromin=29.394&lowbatt=0&dateutc=2026-5-18%2016:32:4"
       "&softwaretype=EasyWeatherV1.5.7&action=updateraw&realtime=1&rtfreq=5",
       station, said);
+}
+
+/// In m/s. A console that does not receive the sensors reports so and repeats no values.
+std::string ws_link_form(const std::string& station, const PushedWind* wind) {
+  const std::string said = wind == nullptr ? "t1cn=0"
+                                           : fmt::format(
+                                                 "t1cn=1&t1bat=1&t1tem=10.6&t1hum=93&t1wdir={:.0f}&t1ws={:.2f}&"
+                                                 "t1ws10mav=2.9&t1wgust={:.2f}&t1rainra=1.8&t1rainyr=395.5",
+                                                 wind->direction_deg, wind->speed_mph / kMphPerMetrePerSecond,
+                                                 wind->gust_mph / kMphPerMetrePerSecond);
+  return fmt::format(
+      "wsid={}&wspw=correct-horse&datetime=2026-05-18%2016:32:04&rbar=1013.2&abar=988.9&intem=23.4&inhum=55&inbat=1&{}&"
+      "apiver=1.00",
+      station, said);
+}
+
+std::string get_form(PushProtocol protocol, const std::string& station, const PushedWind* wind) {
+  if (protocol == PushProtocol::kAmbient) return ambient_form(station, wind);
+  return protocol == PushProtocol::kWsLink ? ws_link_form(station, wind) : wunderground_form(station, wind);
 }
 
 }  // namespace
@@ -174,9 +194,8 @@ class EcowittPushSimulator::State {
           "Content-Length:{} \r\n\r\n{}",
           options_.path, host, form.size(), form);
     }
-    const bool is_ambient = options_.protocol == PushProtocol::kAmbient;
     return fmt::format("GET {}{} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", options_.path,
-                       is_ambient ? ambient_form(station, heard) : wunderground_form(station, heard), host);
+                       get_form(options_.protocol, station, heard), host);
   }
 
   void send_what_is_due(double time_s) {

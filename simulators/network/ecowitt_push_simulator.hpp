@@ -14,6 +14,7 @@ enum class PushProtocol : std::uint8_t {
   kEcowitt,       ///< POST, PASSKEY
   kWunderground,  ///< GET, ID and PASSWORD
   kAmbient,       ///< GET, PASSKEY
+  kWsLink,        ///< GET, wsid and wspw; metres per second
 };
 
 struct EcowittPushOptions {
@@ -21,7 +22,7 @@ struct EcowittPushOptions {
   std::uint16_t port = 8090;
   PushProtocol protocol = PushProtocol::kEcowitt;
   std::string path;                                          ///< empty: the usual one of the protocol
-  std::string station = "34271334ED1FADA6D8B988B14267E55D";  ///< PASSKEY or ID
+  std::string station = "34271334ED1FADA6D8B988B14267E55D";  ///< PASSKEY, ID or wsid
   double interval_s = 16.0;
   std::uint64_t seed = 1;  ///< of the bytes of the garbage fault
 };

@@ -8,9 +8,12 @@
 //   canboat-si     the same of analyzer -si -nv -camel: in radians, the reference as number and name
 //
 //   candump        (1436509052.249713) can0 09FD0223#645601379DFAFFFF   can-utils, candump -L
+//   canboat-plain  2026-06-21T15:00:00.626Z,2,130306,35,255,8,64,56,01,37,9d,fa,ff,ff   canboat's actisense-serial
+//   actisense      A150000.626 23FF2 1FD02 645601379DFAFFFF            N2K ASCII of Actisense's gateways
 //   on a bus       struct can_frame of linux/can.h: the identifier with its flags, the size, 3 bytes, 8 of data
 //
-// Sources: Yacht Devices YDNU-02 manual, appendix E; canboat analyzer/analyzer.c; the bytes: canboat docs, PGN 130306.
+// Sources: Yacht Devices YDNU-02 manual, appendix E; canboat analyzer/analyzer.c,
+// actisense-serial/actisense-serial.c; canboatjs lib/stringMsg.ts; the bytes: canboat docs, PGN 130306.
 #include "simulators/text/nmea2000_device.hpp"
 
 #include <algorithm>
@@ -78,6 +81,16 @@ std::string candump_line(const BusMessage& message) {
                      message.address, fmt::join(data_of(message), ""));
 }
 
+std::string canboat_plain_line(const BusMessage& message) {
+  return fmt::format("2026-06-21T{:02}:{:02}:{:02}.626Z,2,130306,{},255,8,{:02x}\r\n", message.number / 3600 % 24,
+                     message.number / 60 % 60, message.number % 60, message.address, fmt::join(data_of(message), ","));
+}
+
+std::string actisense_line(const BusMessage& message) {
+  return fmt::format("A{:02}{:02}{:02}.626 {:02X}FF2 1FD02 {:02X}\r\n", message.number / 3600 % 24,
+                     message.number / 60 % 60, message.number % 60, message.address, fmt::join(data_of(message), ""));
+}
+
 /// The bytes of a frame as the kernel takes them.
 std::string bytes_of_frame(canid_t identifier, const BusData& data) {
   can_frame frame{};
@@ -111,11 +124,13 @@ struct BusFormat {
   std::string_view greeting;
   std::string (*line)(const BusMessage& message);
 };
-constexpr std::array<BusFormat, 4> kBusFormats = {
+constexpr std::array<BusFormat, 6> kBusFormats = {
     {{"yacht-devices", "", yacht_devices_line},
      {"canboat", "{\"version\":\"4.12.0\",\"units\":\"std\"}\n", canboat_line},
      {"canboat-si", "{\"version\":\"4.12.0\",\"units\":\"si\"}\n", canboat_si_line},
-     {"candump", "", candump_line}}};
+     {"candump", "", candump_line},
+     {"canboat-plain", "", canboat_plain_line},
+     {"actisense", "", actisense_line}}};
 
 class Nmea2000Device final : public Device {
  public:

@@ -8,7 +8,7 @@
 
 namespace yuragi::simulators::text {
 
-/// The formats of make_nmea2000_device(): yacht-devices, canboat, canboat-si, candump.
+/// The formats of make_nmea2000_device(): yacht-devices, canboat, canboat-si, candump, canboat-plain, actisense.
 std::vector<std::string> nmea2000_format_names();
 
 /// The names of the references of an angle (north, magnetic, apparent, boat, water), by their numbers on the bus.

@@ -1,11 +1,13 @@
-// Any bytes as lines of an NMEA 2000 gateway, of candump, of canboat and of a Signal K server: what is decoded has a
+// Any bytes as lines of NMEA 2000 gateways, of candump, of canboat and of a Signal K server: what is decoded has a
 // speed and is physical.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 
+#include "drivers/decode/marine/actisense.hpp"
 #include "drivers/decode/marine/bus_line.hpp"
 #include "drivers/decode/marine/canboat.hpp"
+#include "drivers/decode/marine/canboat_plain.hpp"
 #include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/marine/yacht_devices.hpp"
@@ -33,6 +35,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
     const auto told = marine::candump_controller_state(frame);
     if (told) require_marine(marine::decode_candump(frame).error() == Refusal::kException);
   }
+  for (const std::string& message : {line, "2018-02-14T15:55:07.944Z,2,130306,3,255,8," + line})
+    require_wind(marine::decode_canboat_plain(message));
+  for (const std::string& message : {line, "A173321.107 23FF2 1FD02 " + line})
+    require_wind(marine::decode_actisense(message));
+  for (const std::string& message : {line, "1597516803000;A;" + line}) {
+    const auto time = marine::bus_line_time(message);
+    if (time) require_marine(!time->text.empty() && message.find(time->text) != message.npos);
+    static_cast<void>(marine::bus_line_format_of(message));
+  }
   require_wind(marine::decode_wind_data(1, ByteSpan(data, size)));
   for (const std::string& record : {line, R"({"src":1,"pgn":130306,"fields":{)" + line + "}}"}) {
     require_wind(marine::decode_canboat({.angle_unit = {}}, record));
@@ -40,7 +51,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
     static_cast<void>(marine::canboat_angle_unit(record));
   }
   marine::BusLineDecoder lines({});
-  for (const std::string& each : {line, "can0 20000040#" + line, line}) require_wind(lines.decode(each));
+  for (const std::string& each : {line, "can0 20000040#" + line, "1597516803000;A;" + line, line})
+    require_wind(lines.decode(each));
   static_cast<void>(marine::signalk_hello(line));
   for (const std::string& delta : {line, R"({"updates":[{"values":[)" + line + "]}]}"}) {
     const auto said = marine::decode_signalk(delta);

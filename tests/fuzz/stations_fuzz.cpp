@@ -40,7 +40,8 @@ void read_mended_reply(decode::ByteSpan items) {
 void read_push(std::string_view target) {
   const auto parts = decode::network::split_push_target(target);
   require(parts.path.size() + parts.form.size() <= target.size());
-  for (const std::string_view form : {target, parts.form}) {
+  const std::string wslink = "wsid=a&" + std::string(parts.form);
+  for (const std::string_view form : {target, parts.form, std::string_view(wslink)}) {
     const auto push = decode::network::decode_station_push(form);
     if (!push) continue;
     require(!push->wind || decode::checked(*push->wind).has_value());
@@ -48,6 +49,7 @@ void read_push(std::string_view target) {
     require(decode::network::push_text(push->kind).size() <= 40);
     const std::string shown = decode::network::without_push_secrets(form);
     require(shown.find("PASSKEY=") == shown.npos || shown.find("PASSKEY=(secret)") != shown.npos);
+    require(shown.find("wspw=") == shown.npos || shown.find("wspw=(secret)") != shown.npos);
     require(shown.find("PASSWORD=") == shown.npos || shown.find("PASSWORD=(secret)") != shown.npos);
   }
 }

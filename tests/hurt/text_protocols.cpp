@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/decode/marine/actisense.hpp"
+#include "drivers/decode/marine/canboat_plain.hpp"
 #include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/yacht_devices.hpp"
 #include "drivers/decode/modbus/modbus.hpp"
@@ -210,6 +212,34 @@ LineWinds candump_winds(std::string_view bytes) {
   });
 }
 
+Message make_canboat_plain(Chance& chance) {
+  const int speed_cm_s = chance.between(0, 6000);
+  const int angle = chance.between(0, 62831);
+  return {fmt::format("2018-02-14T15:55:07.944Z,2,130306,5,255,8,64,{:02x},{:02x},{:02x},{:02x},fa,ff,ff\n",
+                      speed_cm_s & 0xFF, speed_cm_s >> 8, angle & 0xFF, angle >> 8),
+          wind_of(speed_cm_s / 100.0, angle / 10'000.0 / kRadPerDeg)};
+}
+LineWinds canboat_plain_winds(std::string_view bytes) {
+  return winds_in_lines(bytes, [](std::string_view line) -> std::optional<DecodedWind> {
+    const auto said = drivers::decode::marine::decode_canboat_plain(line);
+    return said ? std::optional(said->wind) : std::nullopt;
+  });
+}
+
+Message make_actisense(Chance& chance) {
+  const int speed_cm_s = chance.between(0, 6000);
+  const int angle = chance.between(0, 62831);
+  return {fmt::format("A173321.107 05FF2 1FD02 64{:02X}{:02X}{:02X}{:02X}FAFFFF\r\n", speed_cm_s & 0xFF,
+                      speed_cm_s >> 8, angle & 0xFF, angle >> 8),
+          wind_of(speed_cm_s / 100.0, angle / 10'000.0 / kRadPerDeg)};
+}
+LineWinds actisense_winds(std::string_view bytes) {
+  return winds_in_lines(bytes, [](std::string_view line) -> std::optional<DecodedWind> {
+    const auto said = drivers::decode::marine::decode_actisense(line);
+    return said ? std::optional(said->wind) : std::nullopt;
+  });
+}
+
 /// A form as a gateway pushes it: miles per hour.
 Message make_station_push(Chance& chance) {
   const int speed = chance.between(0, 10'000);
@@ -219,6 +249,16 @@ Message make_station_push(Chance& chance) {
                       "tempf=63.5&humidity=71&winddir={}&windspeedmph={:.2f}&windgustmph={:.2f}&baromabsin=29.9",
                       direction_deg, speed / 100.0, gust / 100.0),
           wind_of(speed / 100.0 * kMetresPerSecondPerMph, direction_deg, gust / 100.0 * kMetresPerSecondPerMph)};
+}
+/// A form of WSLink: metres per second.
+Message make_ws_link_push(Chance& chance) {
+  const int speed = chance.between(0, 500);
+  const int gust = chance.between(speed, 600);
+  const int direction_deg = chance.between(0, 359);
+  return {
+      fmt::format("wsid=home&wspw=hidden&t1cn=1&t1tem=18.4&t1hum=65&t1wdir={}&t1ws={:.1f}&t1wgust={:.1f}&rbar=1013.2",
+                  direction_deg, speed / 10.0, gust / 10.0),
+      wind_of(speed / 10.0, direction_deg, gust / 10.0)};
 }
 LineWinds station_push_winds(std::string_view bytes) {
   const auto push = drivers::decode::network::decode_station_push(bytes);
@@ -304,9 +344,23 @@ constexpr std::array kTextProtocols = {
              .most_false_of_a_million = 30'000,
              .make = make_candump,
              .winds_in = candump_winds},
+    Protocol{.name = "canboat, plain",
+             .is_stream = true,
+             .most_false_of_a_million = 23'000,
+             .make = make_canboat_plain,
+             .winds_in = canboat_plain_winds},
+    Protocol{.name = "Actisense N2K ASCII",
+             .is_stream = true,
+             .most_false_of_a_million = 30'000,
+             .make = make_actisense,
+             .winds_in = actisense_winds},
     Protocol{.name = "Ecowitt push",
              .most_false_of_a_million = 42'000,
              .make = make_station_push,
+             .winds_in = station_push_winds},
+    Protocol{.name = "WSLink push",
+             .most_false_of_a_million = 53'000,
+             .make = make_ws_link_push,
              .winds_in = station_push_winds},
 };
 

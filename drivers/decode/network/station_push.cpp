@@ -41,11 +41,34 @@ enum PushName : std::uint8_t {
   kPushPiezoRainOfDay,
   kPushRainRate,
   kPushPiezoRainRate,
+  kLinkId,
+  kLinkSpeed,
+  kLinkGust,
+  kLinkDirection,
+  kLinkTemperature,
+  kLinkHumidity,
+  kLinkPressure,
+  kLinkSeaLevelPressure,
+  kLinkRainOfYear,
+  kLinkRainRate,
+  kLinkIsReceived,
 };
-constexpr std::array<std::string_view, 20> kPushNames = {
+constexpr std::array<std::string_view, 31> kPushNames = {
     "PASSKEY",      "ID",          "stationtype", "softwaretype", "windspeedmph", "windgustmph", "winddir",
     "tempf",        "humidity",    "baromabsin",  "absbaromin",   "baromin",      "baromrelin",  "totalrainin",
-    "yearlyrainin", "yrain_piezo", "dailyrainin", "drain_piezo",  "rainratein",   "rrain_piezo"};
+    "yearlyrainin", "yrain_piezo", "dailyrainin", "drain_piezo",  "rainratein",   "rrain_piezo", "wsid",
+    "t1ws",         "t1wgust",     "t1wdir",      "t1tem",        "t1hum",        "abar",        "rbar",
+    "t1rainyr",     "t1rainra",    "t1cn"};
+
+/// The names and the unit of the wind in a form.
+struct PushedWindNames {
+  PushName speed;
+  PushName gust;
+  PushName direction;
+  double unit_m_s;
+};
+constexpr PushedWindNames kPushedWind = {kPushSpeed, kPushGust, kPushDirection, kMetresPerSecondPerMph};
+constexpr PushedWindNames kLinkWind = {kLinkSpeed, kLinkGust, kLinkDirection, 1.0};
 
 /// Calls `take` with each part between '&', until it returns false.
 template <class Take>
@@ -103,15 +126,15 @@ class PushFields {
   std::array<std::optional<std::string_view>, kPushNames.size()> values_{};
 };
 
-Result<DecodedWind, Refusal> wind_of_push(const PushFields& fields) {
-  const auto speed_mph = fields.checked_number(kPushSpeed);
-  const auto gust_mph = fields.checked_number(kPushGust);
-  const auto direction_deg = fields.checked_number(kPushDirection);
-  if (!speed_mph || !gust_mph || !direction_deg) return Refusal::kMalformed;
-  if (!*speed_mph) return Refusal::kInvalid;
+Result<DecodedWind, Refusal> wind_of_push(const PushFields& fields, const PushedWindNames& names) {
+  const auto speed = fields.checked_number(names.speed);
+  const auto gust = fields.checked_number(names.gust);
+  const auto direction_deg = fields.checked_number(names.direction);
+  if (!speed || !gust || !direction_deg) return Refusal::kMalformed;
+  if (!*speed) return Refusal::kInvalid;
 
-  DecodedWind wind = {.speed_m_s = **speed_mph * kMetresPerSecondPerMph, .direction_deg = {}, .gust_m_s = {}};
-  if (*gust_mph && **gust_mph >= **speed_mph) wind.gust_m_s = **gust_mph * kMetresPerSecondPerMph;
+  DecodedWind wind = {.speed_m_s = **speed * names.unit_m_s, .direction_deg = {}, .gust_m_s = {}};
+  if (*gust && **gust >= **speed) wind.gust_m_s = **gust * names.unit_m_s;
   if (*direction_deg) {
     wind.direction_deg = wrapped_direction_deg(**direction_deg);
     if (!wind.direction_deg) return Refusal::kImplausible;
@@ -131,6 +154,27 @@ wind::StationQuantities quantities_of_push(const PushFields& fields) {
       fields.first_number({kPushRainTotal, kPushRainOfYear, kPushPiezoRainOfYear, kPushRainOfDay, kPushPiezoRainOfDay},
                           kMillimetresPerInch);
   return said;
+}
+
+wind::StationQuantities quantities_of_link(const PushFields& fields) {
+  wind::StationQuantities said;
+  said.pressure_hpa = fields.first_number({kLinkPressure, kLinkSeaLevelPressure}, 1.0);
+  if (fields.text(kLinkIsReceived) == "0") return said;
+  said.air_temperature_c = fields.number(kLinkTemperature, 1.0);
+  said.relative_humidity_percent = fields.number(kLinkHumidity, 1.0);
+  said.rain_rate_mm_h = fields.number(kLinkRainRate, 1.0);
+  said.rain_total_mm = fields.number(kLinkRainOfYear, 1.0);
+  return said;
+}
+
+/// A form of WSLink with at least a station or a wind.
+StationPush push_of_link(const PushFields& fields) {
+  StationPush push;
+  push.identity = fields.text(kLinkId);
+  push.kind = "WSLink";
+  push.quantities = quantities_of_link(fields);
+  if (fields.text(kLinkIsReceived) != "0") push.wind = wind_of_push(fields, kLinkWind);
+  return push;
 }
 
 std::optional<char> byte_of_hex(std::string_view digits) {
@@ -155,7 +199,7 @@ bool names_a_secret(std::string_view part) {
   std::string words = percent_decoded(part);
   std::ranges::transform(words, words.begin(),
                          [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  constexpr std::array<std::string_view, 5> kSecretWords = {"key", "pass", "pwd", "token", "secret"};
+  constexpr std::array<std::string_view, 6> kSecretWords = {"key", "pass", "pwd", "wspw", "token", "secret"};
   return std::ranges::any_of(kSecretWords,
                              [&](std::string_view word) { return words.find(word) != std::string::npos; });
 }
@@ -189,9 +233,12 @@ Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept
   StationPush push;
   push.identity = fields->text(fields->has(kPushPasskey) ? kPushPasskey : kPushId);
   push.kind = fields->text(fields->has(kPushStationType) ? kPushStationType : kPushSoftwareType);
-  if (push.identity.empty() && !fields->has(kPushSpeed)) return Refusal::kNotMine;
+  if (push.identity.empty() && !fields->has(kPushSpeed)) {
+    if (fields->has(kLinkSpeed) || !fields->text(kLinkId).empty()) return push_of_link(*fields);
+    return Refusal::kNotMine;
+  }
   push.quantities = quantities_of_push(*fields);
-  push.wind = wind_of_push(*fields);
+  push.wind = wind_of_push(*fields, kPushedWind);
   return push;
 }
 
@@ -205,7 +252,7 @@ std::string without_push_secrets(std::string_view form) {
       shown += part;
       return true;
     }
-    for (const std::string_view name : {"PASSKEY=", "PASSWORD="}) {
+    for (const std::string_view name : {"PASSKEY=", "PASSWORD=", "wspw="}) {
       if (part.starts_with(name)) shown += name;
     }
     shown += Secret::kWithheld;

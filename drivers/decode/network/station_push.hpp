@@ -12,7 +12,7 @@
 namespace yuragi::drivers::decode::network {
 
 // What weather stations and gateways push to a server over HTTP: a form (name=value&name=value, percent-encoded), as
-// the body of a POST (Ecowitt) or behind the question mark of a GET (Weather Underground, Ambient Weather).
+// the body of a POST (Ecowitt) or behind the question mark of a GET (Weather Underground, Ambient Weather, WSLink).
 // Sources: drivers/SOURCES.md S9.3.
 //
 //   what                    Ecowitt                     Ambient Weather    Weather Underground
@@ -28,6 +28,17 @@ namespace yuragi::drivers::decode::network {
 //   rate of rain            rainratein (rrain_piezo)                                              inches an hour
 //   time                    dateutc                     dateutc            dateutc
 //
+// WSLink (consoles of CCL: Bresser, Garni, Ventus, Sencor, Youshiko; GET /data/upload.php) has units of its own:
+//
+//   wsid, wspw              which station, its password
+//   t1ws, t1wgust, t1wdir   wind, gust (m/s), direction (degrees)
+//   t1tem, t1hum            temperature (degrees Celsius), humidity (%)
+//   abar, rbar              pressure at the console, at sea level (hPa)
+//   t1rainyr, t1rainra      rain of the year (mm), its rate (mm/h)
+//   t1cn                    0: the console does not receive the sensors; their values are old
+//
+// A form with a value of the wind or the name of a station of the table above is never read as WSLink.
+//
 // A value that is missing is -9999, empty, or left out. The time is that of the gateway's clock, which is wrong without
 // internet: it is not used.
 
@@ -36,12 +47,12 @@ inline constexpr std::size_t kMaxStationPush = 16UL * 1024;
 
 /// The values in a push. The views are parts of the form.
 struct StationPush {
-  std::string_view identity = {};  ///< PASSKEY or ID, as it stands in the form: a secret; empty: it has neither
-  std::string_view kind = {};      ///< what the station is, percent-encoded: "GW2000A_V2.1.5"; empty: not sent
+  std::string_view identity = {};  ///< PASSKEY, ID or wsid, as it stands in the form: a secret; empty: it has neither
+  std::string_view kind = {};  ///< what the station is, percent-encoded: "GW2000A_V2.1.5", "WSLink"; empty: not sent
   /// Without its time. Values are not checked for their range (wind::plausible_part).
   wind::StationQuantities quantities = {};
-  /// kInvalid: it has no speed. kMalformed: the speed is not a number. kImplausible. A gust below the mean wind is left
-  /// out.
+  /// kInvalid: it has no speed, or the console does not receive the sensors. kMalformed: the speed is not a number.
+  /// kImplausible. A gust below the mean wind is left out.
   Result<DecodedWind, Refusal> wind = Refusal::kInvalid;
 };
 
@@ -62,7 +73,8 @@ PushTarget split_push_target(std::string_view target) noexcept;
 Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept;
 
 /// Any bytes as they may be shown and recorded: each part between '&' that mentions a key, a password or a token is
-/// replaced by "(secret)", except the names PASSKEY and PASSWORD. The rest of a form can be decoded. Thread-safe: yes.
+/// replaced by "(secret)", except the names PASSKEY, PASSWORD and wspw. The rest of a form can be decoded. Thread-safe:
+/// yes.
 std::string without_push_secrets(std::string_view form);
 
 /// A value of a form as text for people: decoded, visible ASCII alone, at most 40 characters. Thread-safe: yes.

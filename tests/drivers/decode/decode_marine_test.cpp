@@ -1,12 +1,15 @@
 // Frames and lines as the makers and projects print them: Yacht Devices YDNU-02 manual, appendix E; can-utils lib.h;
-// canboat and canboatjs tests; the Signal K specification.
+// canboat (samples of a WS320 and of an Actisense NGT-1) and canboatjs tests; the Signal K specification.
 #include <array>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "drivers/decode/marine/actisense.hpp"
 #include "drivers/decode/marine/bus_frame.hpp"
+#include "drivers/decode/marine/bus_line.hpp"
 #include "drivers/decode/marine/canboat.hpp"
+#include "drivers/decode/marine/canboat_plain.hpp"
 #include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/marine/yacht_devices.hpp"
@@ -244,6 +247,164 @@ TEST(Canboat, RefusesWhatHasNoWind) {
   for (const char* line : {"", "[]", "1", "{", R"({"pgn":130306,"src":1})", R"({"pgn":130306,"fields":[1]})",
                            R"({"pgn":130306,"src":900,"fields":{"Wind Speed":1.0}})"}) {
     EXPECT_TRUE(refuses(decode_canboat({}, line), Refusal::kMalformed)) << line;
+  }
+}
+
+TEST(CanboatPlain, GivesTheWindOfRealAnemometers) {
+  struct Known {
+    const char* line;
+    int address;
+    double speed_m_s;
+    double direction_deg;
+  };
+  // 0x0044 and 0xA03B; 0x01DF and 0x0067; both apparent.
+  for (const auto& [line, address, speed_m_s, direction_deg] : std::vector<Known>{
+           {"2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff", 3, 0.68, 235.02},
+           {"2016-02-28T19:57:02.364Z,2,130306,130,255,8,f7,df,01,67,00,fa,ff,ff\r\n", 130, 4.79, 0.59},
+           {"2013-05-05-10:11:12.123,2,130306,130,255,8,F7,DF,01,67,00,FA,FF,FF", 130, 4.79, 0.59},
+           {"2013-05-05 10:11:12,2,130306,130,255,6,f7,df,01,67,00,fa", 130, 4.79, 0.59},
+           {"2013-05-05T10:11:12.123456+02:00,7,130306,130,0,8,f7,df,01,67,00,fa,ff,ff,", 130, 4.79, 0.59}}) {
+    EXPECT_TRUE(looks_like_canboat_plain(line)) << line;
+    const auto said = decode_canboat_plain(line);
+    ASSERT_TRUE(said) << line;
+    EXPECT_EQ(said->address, address);
+    EXPECT_EQ(said->reference, WindDataReference::kApparent);
+    EXPECT_NEAR(said->wind.speed_m_s.value(), speed_m_s, 1e-9) << line;
+    EXPECT_NEAR(said->wind.direction_deg.value(), direction_deg, 0.01) << line;
+  }
+}
+
+TEST(CanboatPlain, PassesOverOtherMessagesOfAnyLength) {
+  std::string fast_packet = "2023-06-13T10:39:46.213Z,3,130824,16,255,223";
+  for (int i = 0; i < 223; ++i) fast_packet += ",44";
+  for (const std::string& line : {std::string("2016-02-28T19:57:02.364Z,2,127250,7,255,8,ff,10,3b,ff,7f,ce,f5,fc"),
+                                  std::string("2011-11-24-22:42:04.388,6,126996,36,255,134,09,44,00,3b,a0,fa"),
+                                  std::string("2016-02-28T19:57:02.480Z,0,262386,0,0,33,01,0e,00,d7,e2,01"),
+                                  fast_packet, fast_packet.substr(0, 60)}) {
+    EXPECT_TRUE(refuses(decode_canboat_plain(line), Refusal::kNotMine)) << line;
+  }
+}
+
+TEST(CanboatPlain, RefusesWhatIsHurt) {
+  for (const char* line :
+       {"", "2018-02-14T15:5", "2018-02-14T15:55:07.944Z,2,130306,3,255", "2018-02-14T15:55:07.944Z,2,130306,3,255,8",
+        "2018-02-14T15:55:07.944Z,2,130306,3,255,8,", "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,fa,ff",
+        "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,"}) {
+    EXPECT_TRUE(refuses(decode_canboat_plain(line), Refusal::kTooShort)) << line;
+  }
+  for (const char* line : {"2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,130306,3,255,9,09,44,00,3b,a0,fa,ff,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,f,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,0x,3b,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.944Z,8,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,1303060,3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,130306,256,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,130306,-3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.944Z,2,0x1FD02,3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-142018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "15:55:07.944,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-14T15:55:07.,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff",
+                           "2018-02-14,15:55:07,2,130306,3,255,8,09,44"}) {
+    EXPECT_TRUE(refuses(decode_canboat_plain(line), Refusal::kMalformed)) << line;
+  }
+  EXPECT_TRUE(refuses(decode_canboat_plain("2018-02-14T15:55:07.944Z,2,130306,3,255,3,09,44,00"), Refusal::kTooShort))
+      << "as decode_wind_data()";
+  EXPECT_TRUE(refuses(decode_canboat_plain("2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,ff,ff,3b,a0,fa,ff,ff"),
+                      Refusal::kInvalid));
+}
+
+TEST(Actisense, GivesTheWind) {
+  for (const char* line : {"A173321.107 82FF2 1FD02 F7DF016700FAFFFF", "A764027.880 82FF2 1fd02 f7df016700fa\r\n",
+                           "A173321.107 82FF2 1FD02 F7 DF 01 67 00 FA FF FF"}) {
+    EXPECT_TRUE(looks_like_actisense(line)) << line;
+    const auto said = decode_actisense(line);
+    ASSERT_TRUE(said) << line;
+    EXPECT_EQ(said->address, 130);
+    EXPECT_EQ(said->reference, WindDataReference::kApparent);
+    EXPECT_NEAR(said->wind.speed_m_s.value(), 4.79, 1e-9);
+    EXPECT_NEAR(said->wind.direction_deg.value(), 0.59, 0.01);
+  }
+}
+
+TEST(Actisense, RefusesWhatIsNoWind) {
+  for (const char* line : {"A173321.107 23FF7 1F513 012F3070002F30709F",
+                           "A764027.880 05FF7 1EF00 E59861060202FFFFFFFF03030000FFFFFFFFFFFFFFFFFFFF0000FFFFFF7FFFF"}) {
+    EXPECT_TRUE(refuses(decode_actisense(line), Refusal::kNotMine)) << line;
+  }
+  for (const char* line : {"", "A173321.107", "A173321.107 82FF2 1FD02", "A173321.107 82FF2 1FD02 F7DF01"}) {
+    EXPECT_TRUE(refuses(decode_actisense(line), Refusal::kTooShort)) << line;
+  }
+  for (const char* line : {"173321.107 82FF2 1FD02 F7DF016700FAFFFF", "A17332.107 82FF2 1FD02 F7DF016700FAFFFF",
+                           "A173321.107 2FF2 1FD02 F7DF016700FAFFFF", "A173321.107 82FFA 1FD02 F7DF016700FAFFFF",
+                           "A173321.107 82FF2 FD02 F7DF016700FAFFFF", "A173321.107 82FF2 51FD02 F7DF016700FAFFFF",
+                           "A173321.107 82FF2 1FD02 F7DF016700FAFFF", "A173321.107 82FF2 1FD02 F7DF016700FAFFFF00",
+                           "A173321.107 82FF2 1FD02 F7DF0167x0FAFFFF", "A173321.1073 82FF2 1FD02 F7DF016700FAFFFF"}) {
+    EXPECT_TRUE(refuses(decode_actisense(line), Refusal::kMalformed)) << line;
+  }
+}
+
+constexpr const char* kPlainLine = "2016-02-28T19:57:02.364Z,2,130306,130,255,8,f7,df,01,67,00,fa,ff,ff";
+constexpr const char* kActisenseLine = "A173321.107 82FF2 1FD02 F7DF016700FAFFFF";
+
+TEST(BusLine, DetectsTheFormatOfEachLine) {
+  EXPECT_EQ(bus_line_format_of(kPlainLine), BusLineFormat::kCanboatPlain);
+  EXPECT_EQ(bus_line_format_of(kActisenseLine), BusLineFormat::kActisense);
+  EXPECT_EQ(bus_line_format_of("17:33:21.179 R 09FD0205 64 1E"), BusLineFormat::kYachtDevices);
+  EXPECT_EQ(bus_line_format_of("can0 09FD0205#641E01C8F1FAFFFF"), BusLineFormat::kCandump);
+  EXPECT_EQ(bus_line_format_of(R"({"pgn":130306})"), BusLineFormat::kCanboat);
+  EXPECT_EQ(bus_line_format_of("1597516803000;A;" + std::string(kActisenseLine)), BusLineFormat::kActisense);
+  for (const char* line : {"", "$WIMWV,230.6,R,3.42,M,A*12", "3.4 315", "12:00:00,3.4,315", "1597516803000;A;"})
+    EXPECT_EQ(bus_line_format_of(line), std::nullopt) << line;
+
+  BusLineDecoder lines({});
+  for (const std::string& line :
+       {std::string(kPlainLine), std::string(kActisenseLine), "1597516803000;A;" + std::string(kPlainLine) + "\r\n",
+        "1597516803000;A;" + std::string(kActisenseLine)}) {
+    const auto said = lines.decode(line);
+    ASSERT_TRUE(said) << line;
+    EXPECT_NEAR(said->wind.speed_m_s.value(), 4.79, 1e-9);
+  }
+  EXPECT_TRUE(refuses(lines.decode("1597516803000;N;$WIMWV,230.6,R,3.42,M,A*12"), Refusal::kNotMine));
+  EXPECT_TRUE(refuses(lines.decode("$WIMWV,230.6,R,3.42,M,A*12"), Refusal::kMalformed));
+  EXPECT_TRUE(refuses(lines.decode(" "), Refusal::kTooShort));
+}
+
+TEST(BusLine, TakesTheOneFormatThatItIsTold) {
+  BusLineDecoder yacht({.format = BusLineFormat::kYachtDevices, .angle_unit = {}});
+  EXPECT_TRUE(yacht.decode("17:33:21.179 R 09FD0205 64 1E 01 C8 F1 FA FF FF"));
+  EXPECT_TRUE(refuses(yacht.decode(kPlainLine), Refusal::kMalformed));
+  EXPECT_TRUE(refuses(yacht.decode("17:33"), Refusal::kTooShort));
+  BusLineDecoder plain({.format = BusLineFormat::kCanboatPlain, .angle_unit = {}});
+  EXPECT_TRUE(plain.decode(kPlainLine));
+  EXPECT_TRUE(refuses(plain.decode(kActisenseLine), Refusal::kMalformed));
+}
+
+TEST(BusLine, HasATimeAsItIsWritten) {
+  using Clock = BusLineClock;
+  struct Known {
+    std::string line;
+    Clock clock;
+    std::string text;
+  };
+  for (const auto& [line, clock, text] : std::vector<Known>{
+           {kPlainLine, Clock::kDate, "2016-02-28T19:57:02.364Z"},
+           {"2013-05-05-10:11:12.123,6,126996,36,255,134,09", Clock::kDate, "2013-05-05-10:11:12.123"},
+           {R"({"timestamp":"2020-06-05-18:03:25.626","prio":2,"pgn":130306})", Clock::kDate,
+            "2020-06-05-18:03:25.626"},
+           {kActisenseLine, Clock::kMidnight, "173321.107"},
+           {"17:33:21.179 R 09FD0205 64", Clock::kMidnight, "17:33:21.179"},
+           {"(1436509052.249713) can0 09FD0205#64", Clock::kUnixSeconds, "1436509052.249713"},
+           {"1597516803000;A;2020-08-15T18:40:03.000Z,2,130306,130,255,8,f7", Clock::kDate, "2020-08-15T18:40:03.000Z"},
+           {"1597516803000;A;can0 09FD0205#64", Clock::kUnixMilliseconds, "1597516803000"}}) {
+    const auto time = bus_line_time(line);
+    ASSERT_TRUE(time) << line;
+    EXPECT_EQ(time->clock, clock) << line;
+    EXPECT_EQ(time->text, text);
+  }
+  for (const char* line : {"", "can0 09FD0205#64", "2018-02-14", "2018-02-14T15:55,2", R"({"version":"4.12.0"})",
+                           R"({"timestamp":)", "$WIMWV,230.6,R,3.42,M,A*12"}) {
+    EXPECT_FALSE(bus_line_time(line)) << line;
   }
 }
 

@@ -1,5 +1,7 @@
 // Pushes of real stations, as others have published them with their keys changed, and what is left of them when they
 // are hurt.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -52,6 +54,11 @@ constexpr std::string_view kNoAnemometer =
     "PASSKEY=02EB4812BE8FE29E25936DCC71B81862&stationtype=GW1100A_V2.0.4&dateutc=2022-03-23+17:47:28&tempinf=77.5"
     "&humidityin=38&baromrelin=30.428&baromabsin=30.428&freq=868M&model=GW1100A";
 
+// A console with WSLink, with the names of its API's documentation.
+constexpr std::string_view kWsLink =
+    "wsid=home&wspw=hidden&datetime=2026-11-25%2012:00:00&t1cn=1&t1bat=1&t1tem=18.4&t1hum=65&t1wdir=315&t1ws=3.4"
+    "&t1ws10mav=2.9&t1wgust=5.1&t1rainra=1.2&t1raindy=3.0&t1rainyr=512.9&intem=21.0&rbar=1013.2&abar=1001.5&apiver=0.6";
+
 /// The wind in a form, or why it has none.
 Result<DecodedWind, Refusal> wind_in(std::string_view form) {
   const auto push = decode_station_push(form);
@@ -100,6 +107,32 @@ TEST(StationPush, ReadsAmbientWeather) {
   ASSERT_TRUE(push.has_value());
   EXPECT_EQ(push->identity, "00:0E:C6:00:00:01");
   EXPECT_NEAR(*push->wind->gust_m_s, 0.98349, 1e-5);
+}
+
+TEST(StationPush, ReadsWsLinkInItsOwnUnits) {
+  const auto push = decode_station_push(kWsLink);
+  ASSERT_TRUE(push.has_value());
+  EXPECT_EQ(push->identity, "home");
+  EXPECT_EQ(push->kind, "WSLink");
+  EXPECT_EQ(*push->wind, (DecodedWind{.speed_m_s = 3.4, .direction_deg = 315.0, .gust_m_s = 5.1}));
+  EXPECT_EQ(push->quantities.air_temperature_c, 18.4);
+  EXPECT_EQ(push->quantities.relative_humidity_percent, 65.0);
+  EXPECT_EQ(push->quantities.pressure_hpa, 1001.5) << "the one at the console";
+  EXPECT_EQ(push->quantities.rain_rate_mm_h, 1.2);
+  EXPECT_EQ(push->quantities.rain_total_mm, 512.9);
+
+  const auto unnamed = wind_in("wspw=a&t1ws=0.0&t1wdir=360&t1wgust=1.0");
+  EXPECT_EQ(*unnamed, (DecodedWind{.speed_m_s = 0.0, .direction_deg = 0.0, .gust_m_s = 1.0}));
+  const auto lost = decode_station_push("wsid=a&t1cn=0&t1ws=3.4&t1tem=18.4&rbar=1013.2");
+  ASSERT_TRUE(lost.has_value());
+  EXPECT_TRUE(is_refused_as(lost->wind, Refusal::kInvalid)) << "the console does not receive the sensors";
+  EXPECT_FALSE(lost->quantities.air_temperature_c.has_value());
+  EXPECT_EQ(lost->quantities.pressure_hpa, 1013.2);
+  EXPECT_TRUE(is_refused_as(wind_in("wsid=a&rbar=1013.2"), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused_as(wind_in("wsid=a&t1ws=3.4&t1ws=4.4"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused_as(wind_in("wsid=a&t1ws=3,4"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused_as(wind_in("wsid=a&t1ws=130.5"), Refusal::kImplausible));
+  EXPECT_NEAR(*wind_in("ID=a&windspeedmph=10&t1ws=99")->speed_m_s, 4.4704, 1e-9) << "of another protocol";
 }
 
 TEST(StationPush, KnowsWhatIsMissing) {
@@ -168,6 +201,7 @@ TEST(StationPush, ShowsNoSecret) {
             "PASSKEY=(secret)&tempf=1&PASSWORD=(secret)&z=2");
   EXPECT_EQ(without_push_secrets("passkey=a&Password=b&%50ASSWORD=c&key=d&token=e"),
             "(secret)&(secret)&(secret)&(secret)&(secret)");
+  EXPECT_EQ(without_push_secrets("wsid=a&wspw=b&t1ws=1"), "wsid=a&wspw=(secret)&t1ws=1");
   EXPECT_EQ(without_push_secrets(R"({"PASSKEY": "ABC"})"), "(secret)");
   EXPECT_EQ(without_push_secrets("a=1;PASSKEY=ABC&b=2"), "(secret)&b=2");
   EXPECT_EQ(without_push_secrets("PASSKEY"), "(secret)");
@@ -186,11 +220,13 @@ TEST(StationPush, MakesTextOfAValue) {
 /// A form has no checksum: where a digit of the wind is another digit, that is another wind. Nothing outside of its own
 /// values and names changes it.
 TEST(StationPush, IsHurtOnlyWhereItsOwnValuesAre) {
-  for (const std::string_view whole : {kGw2000, kHp2550, kAmbient}) {
+  for (const std::string_view whole : {kGw2000, kHp2550, kAmbient, kWsLink}) {
     const DecodedWind wind = *wind_in(whole);
     for (std::size_t at = 0; at < whole.size(); ++at) {
       const std::size_t begin = whole.rfind('&', at) == whole.npos ? 0 : whole.rfind('&', at) + 1;
-      const bool is_wind = whole.substr(begin).starts_with("wind") || whole.substr(at + 1).starts_with("wind");
+      const bool is_wind = std::ranges::any_of(std::array{"wind", "t1w", "t1cn"}, [&](const char* name) {
+        return whole.substr(begin).starts_with(name) || whole.substr(at + 1).starts_with(name);
+      });
       if (is_wind) continue;
       std::string hurt(whole);
       for (int value = 0; value < 256; ++value) {
@@ -205,7 +241,8 @@ TEST(StationPush, IsHurtOnlyWhereItsOwnValuesAre) {
 TEST(StationPush, NeverSaysWhatCannotBeNorASecret) {
   std::mt19937_64 random(20261123);
   for (int i = 0; i < 40'000; ++i) {
-    std::string hurt(i % 3 == 0 ? kGw2000 : i % 3 == 1 ? kHp2550 : kDeafObserver);
+    constexpr std::array kForms = {kGw2000, kHp2550, kDeafObserver, kWsLink};
+    std::string hurt(kForms.at(static_cast<std::size_t>(i) % kForms.size()));
     for (auto changes = 1 + random() % 4; changes > 0; --changes) {
       const auto at = static_cast<std::size_t>(random() % hurt.size());
       const auto value = static_cast<char>(random() % 4 == 0 ? random() : ' ' + random() % 95);

@@ -181,6 +181,7 @@ const std::vector<KnownReading> kKnownReadings = {
      9.9},
     {"xunchip-xm8589", 3, {{0, 121}}, 12.1, {}, {}},
     {"generic-rs485-cup", 3, {{0, 30}}, 3.0, {}, {}},
+    {"generic-rs485-cup-0x16", 3, {{0x16, 42}}, 4.2, {}, {}},
 };
 
 /// The registers that a published frame carries.

@@ -134,7 +134,8 @@ TEST_P(EcowittPushProtocols, AreAllTaken) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EcowittPushProtocols,
-                         testing::Values(PushProtocol::kEcowitt, PushProtocol::kWunderground, PushProtocol::kAmbient));
+                         testing::Values(PushProtocol::kEcowitt, PushProtocol::kWunderground, PushProtocol::kAmbient,
+                                         PushProtocol::kWsLink));
 
 /// A connection to a port of this machine.
 Descriptor connect_to(std::uint16_t port) {
@@ -328,7 +329,8 @@ TEST(EcowittPushDriver, ShowsNoKey) {
         "GET /atopsecret" + form + " HTTP/1.1\r\n\r\n", post_of("{\"PASSKEY\": \"topsecret\"}", "/a")}) {
     EXPECT_THAT(bench.ask(request), Not(HasSubstr("topsecret")));
   }
-  EXPECT_EQ(bench.sink.raws.size(), 8U);
+  EXPECT_THAT(bench.ask("GET /a?wsid=b&wspw=topsecret&t1ws=1 HTTP/1.1\r\n\r\n"), Not(HasSubstr("topsecret")));
+  EXPECT_EQ(bench.sink.raws.size(), 9U);
   for (const RecordingSink::Raw& raw : bench.sink.raws)
     EXPECT_THAT(std::string(raw.message.begin(), raw.message.end()), Not(HasSubstr("topsecret")));
   for (const RecordingSink::Link& link : bench.sink.links) EXPECT_THAT(link.detail, Not(HasSubstr("topsecret")));

@@ -138,13 +138,13 @@ TEST_F(Nmea2000Fault, Garbage) {
   }
 }
 TEST_F(Nmea2000Fault, Split) {
-  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump"}) {
+  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump", "canboat-plain", "actisense"}) {
     put(Wire::kTcp, format);
     expect_pieces_are_joined();
   }
 }
 TEST_F(Nmea2000Fault, Partial) {
-  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump"}) {
+  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump", "canboat-plain", "actisense"}) {
     put(Wire::kTcp, format);
     expect_parts_are_refused(Wire::kTcp);
   }

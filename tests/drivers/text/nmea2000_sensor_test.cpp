@@ -171,5 +171,40 @@ TEST_F(Nmea2000SensorTest, ReadsCandumpsLinesWithoutBeingTold) {
   EXPECT_TRUE(sink.refusals.empty());
 }
 
+TEST_F(Nmea2000SensorTest, NamesTheFormatsIfNoneFits) {
+  const auto detail_after = [this](ParameterValues::Map given, const std::string& line) {
+    given["transport"] = std::string("tcp");
+    given["host"] = std::string("gateway");
+    make(std::move(given));
+    for (int i = 0; i < 20; ++i) {
+      receive(line);
+      run(250ms);
+    }
+    return sink.last_detail();
+  };
+  const std::string depth = "2018-02-14T15:55:07.944Z,3,128267,3,255,8,09,44,00,3b,a0,fa,ff,ff\n";
+  EXPECT_THAT(detail_after({}, depth), HasSubstr("PGN 130306 is on the bus"));
+  EXPECT_GT(sink.count(decode::Refusal::kNotMine), 10);
+  const std::string unknown = detail_after({}, "$WIMWV,230.6,R,3.42,M,A*12\n");
+  EXPECT_THAT(unknown, HasSubstr("in no format of NMEA 2000 that is read (the first: \"$WIMWV,230.6"));
+  EXPECT_THAT(unknown, HasSubstr("yacht-devices, canboat, candump, canboat-plain, actisense"));
+  EXPECT_THAT(unknown, testing::Not(HasSubstr("cable")));
+  const std::string other = detail_after({{"format", std::string("yacht-devices")}}, depth);
+  EXPECT_THAT(other, HasSubstr("in the format canboat-plain, not yacht-devices"));
+  EXPECT_THAT(other, HasSubstr("set format = \"auto\""));
+}
+
+TEST_F(Nmea2000SensorTest, ReadsCanboatsPlainLinesAndActisensesWithoutBeingTold) {
+  make({{"transport", std::string("tcp")}, {"host", std::string("gateway")}});
+  receive("2016-02-28T19:57:02.364Z,2,130306,35,255,8,f7,df,01,67,00,fa,ff,ff\r\n");
+  run(500ms);
+  receive("A173321.107 23FF2 1FD02 F7DF016700FAFFFF\r\n");
+  run(500ms);
+  receive("1597516803000;A;2020-08-15T18:40:03.000Z,2,130306,35,255,8,f7,df,01,67,00,fa,ff,ff\n");
+  ASSERT_EQ(sink.readings.size(), 3U);
+  for (const wind::Reading& reading : sink.readings) EXPECT_NEAR(reading.speed_m_s, 4.79, 1e-9);
+  EXPECT_TRUE(sink.refusals.empty());
+}
+
 }  // namespace
 }  // namespace yuragi::drivers::text

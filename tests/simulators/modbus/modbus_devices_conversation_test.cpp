@@ -53,6 +53,7 @@ const std::vector<PlayedDevice> kPlayedDevices = {
     {"thies-clima-sensor-us", true, true, "thp"},
     {"xunchip-xm8589", false},
     {"generic-rs485-cup", false},
+    {"generic-rs485-cup-0x16", false},
 };
 
 class PlayedDeviceTest : public testing::TestWithParam<PlayedDevice> {

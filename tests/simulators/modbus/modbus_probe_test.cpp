@@ -111,6 +111,15 @@ TEST_F(ModbusProbeTest, FindsAStationByItsOwnRegistersWhereTheFirstOnesAreMissin
   EXPECT_NEAR(*hits[0].fits[0].gust_m_s, 7.0, 1e-6);
 }
 
+TEST_F(ModbusProbeTest, FindsACupWhoseOnlyRegisterIs0x16) {
+  play(Transport::kTcp, {"--device", "generic-rs485-cup-0x16"});
+  plan_.ids = {1};
+  const auto hits = probe();
+  ASSERT_EQ(hits.size(), 1U);
+  EXPECT_THAT(names_of(hits[0]), ElementsAre("generic-rs485-cup-0x16"));
+  EXPECT_NEAR(hits[0].fits[0].speed_m_s.value(), 7.0, 1e-6);
+}
+
 TEST_F(ModbusProbeTest, SettlesAScaleByTheWindForceThatTheDeviceItselfMakesOfIt) {
   using drivers::modbus::ForceVerdict;
   play(Transport::kTcp, {"--device", "renke-multi-station@1", "--device", "renke-multi-station-x100@2"});

@@ -110,7 +110,7 @@ TEST(TextConversation, AsksOverTcp) {
 }
 
 TEST(TextConversation, AgreesOnTheWindOfABus) {
-  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump"}) {
+  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump", "canboat-plain", "actisense"}) {
     SCOPED_TRACE(format);
     TextSimulatorProcess gateway("nmea2000", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});
     TextSensorRun live("nmea2000", tcp_to(gateway.port()));

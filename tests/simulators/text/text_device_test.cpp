@@ -81,6 +81,8 @@ TEST(Nmea2000Device, SaysEachFormatByteForByte) {
   EXPECT_THAT(line_in("canboat-si"),
               testing::HasSubstr(R"("windAngle":4.0247,"reference":{"value":2,"name":"Apparent"})"));
   EXPECT_EQ(line_in("candump"), "(1436509052.249713) can0 09FD0223#005601379DFAFFFF\n");
+  EXPECT_EQ(line_in("canboat-plain"), "2026-06-21T00:00:00.626Z,2,130306,35,255,8,00,56,01,37,9d,fa,ff,ff\r\n");
+  EXPECT_EQ(line_in("actisense"), "A000000.626 23FF2 1FD02 005601379DFAFFFF\r\n");
   EXPECT_THAT(make_nmea2000_device("yacht-devices", "north")->send_messages(kMoment, {}).at(0),
               testing::HasSubstr(" F8 "));
   EXPECT_THAT(make_nmea2000_device("canboat", "boat")->send_messages(kMoment, {}).at(0),
