@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "drivers/decode/text_fields.hpp"
+#include "engine/base/compass.hpp"
 
 namespace yuragi::drivers::decode {
 namespace {
@@ -42,6 +43,13 @@ Result<double, Refusal> number_of_text(std::string_view text) {
   return number;
 }
 
+Result<double, Refusal> direction_of_text(std::string_view text) {
+  text = trimmed(text);
+  if (const auto point_deg = compass_point_deg(text)) return *point_deg;
+  if (text == "VRB") return Refusal::kInvalid;
+  return number_of_text(text);
+}
+
 Result<std::optional<double>, Refusal> json_number(const Json* value) {
   if (value == nullptr || value->is_null()) return std::optional<double>();
   if (value->is_string()) {
@@ -51,6 +59,13 @@ Result<std::optional<double>, Refusal> json_number(const Json* value) {
   }
   if (!value->is_number()) return Refusal::kMalformed;
   return std::optional(value->get<double>());
+}
+
+Result<std::optional<double>, Refusal> json_direction(const Json* value) {
+  if (value == nullptr || !value->is_string()) return json_number(value);
+  const auto direction_deg = direction_of_text(value->get_ref<const std::string&>());
+  if (!direction_deg) return direction_deg.error();
+  return std::optional(*direction_deg);
 }
 
 }  // namespace yuragi::drivers::decode

@@ -25,8 +25,15 @@ const nlohmann::json* json_at(const nlohmann::json& json, const std::string& poi
 /// (unavailable, unknown, none, an empty text). kMalformed: anything else.
 Result<double, Refusal> number_of_text(std::string_view text);
 
+/// The direction in degrees that a text stands for: a compass point ("NW", in capitals or not), or as number_of_text().
+/// kInvalid: also "VRB", by which weather services mean a direction that varies.
+Result<double, Refusal> direction_of_text(std::string_view text);
+
 /// The number that stands there; nullopt for null and for no place (nullptr). A text is read as number_of_text() does.
 /// kMalformed: something else.
 Result<std::optional<double>, Refusal> json_number(const nlohmann::json* value);
+
+/// The same for a direction in degrees; a text is read as direction_of_text() does.
+Result<std::optional<double>, Refusal> json_direction(const nlohmann::json* value);
 
 }  // namespace yuragi::drivers::decode

@@ -11,13 +11,13 @@
 #include <fmt/format.h>
 
 #include "drivers/bus/mqtt_client.hpp"
-#include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/json_pointer.hpp"
 #include "drivers/decode/speed_units.hpp"
 #include "drivers/mqtt/mqtt_payload.hpp"
 #include "drivers/mqtt/mqtt_preset.hpp"
 #include "drivers/mqtt/station_identity.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/held_wind.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/secret_source.hpp"
@@ -136,7 +136,7 @@ const Fields<Keys> kMqttFields = {
      of(&Settings::direction, &Source::topic)},
     {{.name = "direction_path",
       .default_value = std::string(""),
-      .help = "JSON pointer to the direction in degrees; empty: the preset's"},
+      .help = "JSON pointer to the direction, in degrees or as a compass point (NW); empty: the preset's"},
      &Keys::direction_path},
     {{.name = "gust_topic", .default_value = std::string(""), .help = "the gust's own topic"},
      of(&Settings::gust, &Source::topic)},
@@ -164,10 +164,10 @@ const Fields<Keys> kMqttFields = {
      [](std::int64_t time_s) { return std::chrono::seconds(time_s); }},
 };
 
-/// The last direction or gust, and its time. It is kept for speeds that arrive without one.
-struct HeldValue {
+/// A direction or gust that a message has: without a value if the publisher reports that it has none.
+struct SentValue {
   std::optional<double> value;
-  MonoTime since{};
+  bool is_unreadable = false;
 };
 
 /// Makes a received text printable for the status.
@@ -201,6 +201,7 @@ class Sensor final : public sensor::ReopeningSensor {
                            settings_.subscription.port)),
         client_(bus::make_mqtt_client(settings_.subscription)),
         form_(form_of(settings_)),
+        held_(settings_.hold),
         stations_(settings_.silence) {}
 
   void interrupt() noexcept override { client_->interrupt(); }
@@ -208,9 +209,7 @@ class Sensor final : public sensor::ReopeningSensor {
  protected:
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
     if (const auto connected = client_->connect(); !connected) return connected.error();
-    direction_ = {};
-    gust_ = {};
-    is_impossible_ = false;
+    held_.clear();
     note_.clear();
     stations_.restart();
     has_received_ = false;
@@ -252,10 +251,10 @@ class Sensor final : public sensor::ReopeningSensor {
     const auto unit = unit_of(payload);
     if (!unit) return sink.refused(unit.error());
 
-    const auto direction = value_in(settings_.direction, message.topic, payload, 1.0, now.mono, sink);
-    if (direction) hold_direction(*direction, sink);
-    const auto gust = value_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
-    if (gust && !hold_gust(*gust)) return sink.refused(decode::Refusal::kImplausible);
+    const auto direction = value_in(settings_.direction, message.topic, payload, std::nullopt, sink);
+    if (direction) hold_direction(*direction, now.mono, sink);
+    const auto gust = value_in(settings_.gust, message.topic, payload, *unit, sink);
+    if (gust && !held_.hold_gust(gust->value, now.mono)) return sink.refused(decode::Refusal::kImplausible);
     if (!bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) return;
     const Place* const speed = place_in(payload, settings_.speed);
     const bool names_it = speed != nullptr || settings_.preset->names_stations;
@@ -289,36 +288,26 @@ class Sensor final : public sensor::ReopeningSensor {
     return decode::Refusal::kInvalid;
   }
 
-  /// Returns a direction or gust of this message: without a value if that cannot be read, or is sent as unknown;
-  /// nullopt if the message has no place for it.
-  std::optional<HeldValue> value_in(const Source& source, const std::string& topic, const Payload& payload, double unit,
-                                    MonoTime now, sensor::Sink& sink) const {
+  /// Returns a direction (without `unit`) or a gust of this message: without a value if that cannot be read, or is sent
+  /// as unknown; nullopt if the message has no place for it.
+  std::optional<SentValue> value_in(const Source& source, const std::string& topic, const Payload& payload,
+                                    std::optional<double> unit, sensor::Sink& sink) const {
     if (!bus::mqtt_topic_matches(topic, source.topic)) return std::nullopt;
     const Place* const place = place_in(payload, source);
     if (place == nullptr) return std::nullopt;
-    HeldValue said = {.value = std::nullopt, .since = now};
-    const auto number = payload.number_at(place->pointer);
-    if (number && *number) said.value = **number * place->factor.value_or(unit);
-    if (!number && source.topic != settings_.speed.topic) sink.refused(number.error());
-    return said;
+    const auto number = unit ? payload.number_at(place->pointer) : payload.direction_at(place->pointer);
+    if (!number) {
+      if (source.topic != settings_.speed.topic) sink.refused(number.error());
+      return SentValue{.value = std::nullopt, .is_unreadable = number.error() != decode::Refusal::kInvalid};
+    }
+    if (!*number) return SentValue{.value = std::nullopt};
+    return SentValue{.value = **number * place->factor.value_or(unit.value_or(1.0))};
   }
 
-  /// An impossible direction is none; the speed beside it counts.
-  void hold_direction(const HeldValue& said, sensor::Sink& sink) {
-    direction_ = said;
-    if (said.value) direction_.value = decode::wrapped_direction_deg(*said.value);
-    is_impossible_ = said.value && !direction_.value;
-    if (is_impossible_) sink.refused(decode::Refusal::kImplausible);
-  }
-  /// Returns false if it is impossible; then it is not kept.
-  bool hold_gust(const HeldValue& said) {
-    gust_ = said;
-    if (!said.value) return true;
-    decode::DecodedWind wind;
-    wind.gust_m_s = said.value;
-    if (decode::checked(wind)) return true;
-    gust_.value.reset();
-    return false;
+  /// A direction that is impossible, or cannot be read, is none; the speed beside it counts.
+  void hold_direction(const SentValue& sent, MonoTime now, sensor::Sink& sink) {
+    if (sent.is_unreadable) return held_.lose_direction(now);
+    if (!held_.hold_direction(sent.value, now)) sink.refused(decode::Refusal::kImplausible);
   }
 
   bool take_quantities(const Payload& payload, Instant now, sensor::Sink& sink) const {
@@ -334,37 +323,21 @@ class Sensor final : public sensor::ReopeningSensor {
                   sensor::Sink& sink) {
     if (!speed) return sink.refused(speed.error());
     if (!*speed) return sink.refused(decode::Refusal::kNotMine);
-    decode::DecodedWind wind;
-    wind.speed_m_s = **speed * metres_per_second;
-    wind.gust_m_s = still_held(gust_, now);
-    wind.direction_deg = still_held(direction_, now);
-    const auto plausible = decode::checked(wind);
-    if (!plausible) return sink.refused(plausible.error());
+    const auto reading = held_.reading_of(**speed * metres_per_second, now);
+    if (!reading) return sink.refused(reading.error());
     if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
 
     has_received_ = true;
     received_at_ = now.mono;
     report_connected(sink, where_ + stations_.warning(now.mono));
-    sink.reading({.time = now,
-                  .speed_m_s = *plausible->speed_m_s,
-                  .direction_deg = plausible->direction_deg,
-                  .gust_m_s = plausible->gust_m_s,
-                  .quality = is_impossible_ && now.mono - direction_.since <= settings_.hold
-                                 ? wind::ReadingQuality::kUncertain
-                                 : wind::ReadingQuality::kGood});
-  }
-
-  std::optional<double> still_held(const HeldValue& held, Instant now) const {
-    return now.mono - held.since <= settings_.hold ? held.value : std::nullopt;
+    sink.reading(*reading);
   }
 
   Settings settings_;
   std::string where_;
   std::unique_ptr<bus::MqttClient> client_;
   PayloadForm form_;
-  HeldValue direction_;
-  HeldValue gust_;              // m/s
-  bool is_impossible_ = false;  // the last direction was missing
+  sensor::HeldWind held_;
   StationChoice stations_;
   std::string note_;  // why messages cannot be read, for the status; empty: they can
   sensor::ReadingLimit limit_;

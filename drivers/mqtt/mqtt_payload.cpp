@@ -40,6 +40,20 @@ Result<std::optional<double>, decode::Refusal> Payload::number_at(const std::str
   }
 }
 
+Result<std::optional<double>, decode::Refusal> Payload::direction_at(const std::string& pointer) const {
+  if (pointer.empty()) {
+    const auto direction_deg = decode::direction_of_text(bytes_);
+    if (!direction_deg) return direction_deg.error();
+    return std::optional(*direction_deg);
+  }
+  if (json_.is_discarded()) return decode::Refusal::kMalformed;
+  try {
+    return decode::json_direction(find(pointer));
+  } catch (const Json::exception&) {
+    return decode::Refusal::kMalformed;
+  }
+}
+
 std::optional<std::string> Payload::text_at(const std::string& pointer) const {
   if (json_.is_discarded()) return std::nullopt;
   try {

@@ -15,10 +15,10 @@ namespace yuragi::drivers::mqtt {
 /// How the payload of a message is read.
 enum class PayloadForm : std::uint8_t {
   kJson,
-  kText,  ///< of one number: JSON in it is not looked for, nor paid for
+  kText,  ///< of one value: JSON in it is not looked for, nor paid for
 };
 
-/// The payload of one message, of any bytes: JSON, or the text of one number. It is parsed once. A place in it is a
+/// The payload of one message, of any bytes: JSON, or the text of one value. It is parsed once. A place in it is a
 /// JSON pointer (RFC 6901), such as /TX23/Speed/Act; the empty one is the payload itself. Thread-safe: reading is.
 class Payload {
  public:
@@ -33,6 +33,10 @@ class Payload {
   /// reads as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends
   /// it (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there.
   Result<std::optional<double>, decode::Refusal> number_at(const std::string& pointer) const;
+
+  /// The same for a direction in degrees, which can be a compass point, too ("NW"). kInvalid: also "VRB", a direction
+  /// that varies.
+  Result<std::optional<double>, decode::Refusal> direction_at(const std::string& pointer) const;
 
   /// Returns the text at that place, or a whole number as text, because identifiers are sent so; nullopt if it has
   /// neither.

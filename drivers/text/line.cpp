@@ -48,7 +48,8 @@ Result<std::optional<double>, Failure> invalid_number_of(const std::string& text
 const Fields<LineOptions> kLineReading = {
     {{.name = "format",
       .default_value = std::string("auto"),
-      .help = "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json if the line begins "
+      .help = "columns: 4.2,270; keys: speed=4.2 direction=NW, in one line or each in its own; json: {\"speed\": 4.2}; "
+              "auto: json if the line begins "
               "with '{', keys if it has '=' or ':'",
       .choices = kLineFormats},
      &LineOptions::format},
@@ -102,6 +103,10 @@ const Fields<LineOptions> kLineReading = {
 const Fields<LineSensorSettings> kLineFields = {
     {{"north_offset", "deg", 0.0, -360.0, 360.0, "bearing of the vane's north mark, clockwise from north"},
      &LineSensorSettings::north_offset_deg},
+    {{"hold", "s", 60.0, 0.1, 86400.0,
+      "a direction or gust that came in another line is used for this long with speeds that come without one"},
+     &LineSensorSettings::hold,
+     from_seconds},
 };
 const std::vector<Parameter> kLineParameters =
     with_byte_port_parameters(together(kLineReading.parameters(), kLineFields.parameters()), 2.0);

@@ -61,6 +61,13 @@ WindFrame frame_of(std::string_view sentence, decode::WindReference reference) {
   return frame_of_reference(reference);
 }
 
+/// Returns true for a line that looks like NMEA 0183, but is none of its sentences of the wind.
+bool is_foreign_sentence(std::string_view line) {
+  if (format_by_look(line) != NmeaFormat::kNmea) return false;
+  const auto wind = decode::text::decode_nmea({.checksum = decode::WhenMissing::kAccept}, line);
+  return !wind && wind.error() == decode::Refusal::kNotMine;
+}
+
 }  // namespace
 
 NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port)
@@ -142,6 +149,7 @@ std::string NmeaSensor::advice(decode::Refusal why, std::string_view line) const
   const bool is_wxt = decode::text::looks_like_wxt(line);
   const bool has_checksum = is_wxt ? decode::trimmed(line)[1] == 'r' : line.find_first_of("*\x03") != line.npos;
   if (why == decode::Refusal::kBadChecksum && !has_checksum) {
+    if (is_foreign_sentence(line)) return advice(decode::Refusal::kNotMine, line);
     return "lines arrive from " + where +
            " without a checksum: set the device to send one, or missing_checksum to \"accept\"";
   }

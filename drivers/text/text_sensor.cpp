@@ -40,6 +40,13 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
 
 }  // namespace
 
+std::string shown(std::string_view line) {
+  std::string text(line.substr(0, kShownOfLine));
+  std::ranges::replace_if(
+      text, [](char c) { return c < ' ' || c == '\x7f'; }, '.');
+  return text;
+}
+
 bool is_text(std::string_view line) noexcept {
   constexpr std::string_view kOthers("\0\x02\x03\t", 4);
   return std::ranges::all_of(
@@ -79,7 +86,7 @@ Result<MonoTime, Failure> Sensor::open(const sensor::Clock& clock) {
   next_request_ = now;
   last_bytes_ = now;
   readings_.restart(now);
-  bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
+  bytes_ = readable_lines_ = cut_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
   refused_ = {};
   begin();
   return now + settings_.delay_after_open;
@@ -222,7 +229,7 @@ bool Sensor::take_bytes(const Instant& now, sensor::Sink& sink) {
 /// Takes a line that was too long, or was cut off by the next one; only its last bytes are kept.
 void Sensor::take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::Sink& sink) {
   if (std::exchange(skips_line_, false)) return;
-  if (why == decode::Refusal::kMalformed) ++garbled_lines_;
+  ++(why == decode::Refusal::kTooShort ? cut_lines_ : garbled_lines_);
   sink.raw(sensor::RawDirection::kReceived, end);
   refuse(why, "", sink);
 }
@@ -260,7 +267,9 @@ void Sensor::drop_cut_line(sensor::Sink& sink) {
   const auto cut = assembler_.finish();
   if (!cut) return;
   sink.raw(sensor::RawDirection::kReceived, bytes_of(**cut));
-  if (!std::exchange(skips_line_, false)) refuse(decode::Refusal::kTooShort, **cut, sink);
+  if (std::exchange(skips_line_, false)) return;
+  ++cut_lines_;
+  refuse(decode::Refusal::kTooShort, **cut, sink);
 }
 
 void Sensor::publish(const wind::Reading& reading, sensor::Sink& sink) {
@@ -269,7 +278,7 @@ void Sensor::publish(const wind::Reading& reading, sensor::Sink& sink) {
   if (can_flood && !limit_.admits(reading.time.mono)) return sink.refused(decode::Refusal::kTooFrequent);
   readings_.arrive(reading.time.mono);
   vain_openings_ = 0;
-  bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
+  bytes_ = readable_lines_ = cut_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
   refused_ = {};
   report_connected(sink, name() + " at " + where_);
   sink.reading(reading);
@@ -297,7 +306,7 @@ void Sensor::judge_device(MonoTime now, sensor::Sink& sink) {
   if (const std::string told = reported_trouble(); !told.empty()) return report_unusable(sink, told);
   if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
   const decode::Refusal why = main_refusal();
-  const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;
+  const bool has_lines = readable_lines_ + cut_lines_ > 0 && readable_lines_ + cut_lines_ >= garbled_lines_;
   if (late_lines_ > 0 || !has_lines) {
     report_unusable(sink, trouble_without_lines());
   } else if (why == decode::Refusal::kInvalid || why == decode::Refusal::kImplausible) {
@@ -306,10 +315,6 @@ void Sensor::judge_device(MonoTime now, sensor::Sink& sink) {
   } else {
     report_unusable(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
   }
-}
-
-std::size_t Sensor::cut_lines() const {
-  return refused_[static_cast<std::size_t>(decode::Refusal::kTooShort)].count;
 }
 
 /// The reason why most lines were refused: lines of other formats count only if there are no others.
@@ -348,14 +353,9 @@ std::string Sensor::trouble_without_lines() const {
                      is_serial ? "baud, data_bits and parity" : "that this is the device, and that it sends text");
 }
 
-std::string Sensor::shown(std::string_view line) {
-  std::string text(line.substr(0, kShownOfLine));
-  std::ranges::replace_if(
-      text, [](char c) { return c < ' ' || c == '\x7f'; }, '.');
-  return text;
-}
-
 std::string Sensor::advice(decode::Refusal why, std::string_view line) const {
+  // Whole lines that are too short have another format; a bad cable also cuts lines.
+  if (why == decode::Refusal::kTooShort && cut_lines_ == 0) why = decode::Refusal::kMalformed;
   switch (why) {
     case decode::Refusal::kInvalid:
       return fmt::format("{} reports that it cannot measure (\"{}\"): check the device", where_, shown(line));

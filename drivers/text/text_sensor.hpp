@@ -64,8 +64,6 @@ class Sensor : public sensor::ReopeningSensor {
   virtual std::string reported_trouble() const { return {}; }
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
-  /// The beginning of a line, as a status may show it.
-  static std::string shown(std::string_view line);
 
   const SensorSettings& settings() const noexcept { return settings_; }
 
@@ -95,7 +93,6 @@ class Sensor : public sensor::ReopeningSensor {
 
   Nanoseconds silence_limit() const;
   void judge_device(MonoTime now, sensor::Sink& sink);
-  std::size_t cut_lines() const;
   decode::Refusal main_refusal() const;
   std::string silence_trouble() const;
   std::string trouble_without_lines() const;
@@ -130,10 +127,14 @@ class Sensor : public sensor::ReopeningSensor {
   std::array<Refused, decode::kRefusalCount> refused_{};
   std::size_t bytes_ = 0;
   std::size_t readable_lines_ = 0;
+  std::size_t cut_lines_ = 0;  // without their end: it was not received
   std::size_t garbled_lines_ = 0;
   std::size_t foreign_datagrams_ = 0;
   std::size_t late_lines_ = 0;
 };
+
+/// The beginning of a line for the status, with unprintable characters replaced.
+std::string shown(std::string_view line);
 
 /// Returns true if every byte is one of text, including NUL, STX, ETX and tab.
 bool is_text(std::string_view line) noexcept;

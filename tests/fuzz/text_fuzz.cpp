@@ -66,6 +66,13 @@ void decode_everything(std::string_view line, unsigned choices) {
     require_physical(decode::text::decode_wxt({.checksum = checksum}, text));
     static_cast<void>(decode::text::decode_wxt_quantities({.checksum = checksum}, text));
     require_physical(decode::text::decode_line(numbers, text));
+    if (const auto read = decode::text::read_line(numbers, text)) {
+      const decode::DecodedWind& wind = read->wind;
+      if (wind.speed_m_s || wind.direction_deg || wind.gust_m_s) require_physical(wind);
+      require_text(read->names_speed || !wind.speed_m_s);
+      require_text(read->names_direction || !wind.direction_deg);
+      require_text(read->names_gust || !wind.gust_m_s);
+    }
   }
 }
 

@@ -59,8 +59,13 @@ Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept {
   wind.gust_m_s = tenths(wmr300_number(packet, 8));
   wind.speed_m_s = tenths(wmr300_number(packet, 12));
   const auto direction_deg = wmr300_number(packet, 14);
-  if (direction_deg && *direction_deg > 360.0) return Refusal::kImplausible;
-  if (direction_deg) wind.direction_deg = wrapped_direction_deg(*direction_deg);
+  if (direction_deg && *direction_deg <= 360.0) {
+    wind.direction_deg = wrapped_direction_deg(*direction_deg);
+  } else if (direction_deg && !wind.speed_m_s) {
+    return Refusal::kImplausible;
+  } else if (direction_deg) {
+    wind.status = DecodedStatus::kUncertain;  // the speed is still one
+  }
   return checked(wind);
 }
 

@@ -118,7 +118,7 @@ Result<DecodedWind, Refusal> wind_of_items(const Items& items) {
   if (!wind.speed_m_s) return Refusal::kInvalid;
   if (const auto direction_deg = items.wind_number(kDirection, 1.0)) {
     wind.direction_deg = wrapped_direction_deg(*direction_deg);
-    if (!wind.direction_deg) return Refusal::kImplausible;
+    if (!wind.direction_deg) wind.status = DecodedStatus::kUncertain;  // the speed is still one
   }
   return checked(wind);
 }

@@ -3,8 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/decode/json_value.hpp"
-#include "drivers/decode/text_fields.hpp"
-#include "engine/base/compass.hpp"
 #include "engine/base/json_text.hpp"
 #include "engine/wind/wind_reading.hpp"
 
@@ -17,22 +15,10 @@ const Json* value_of(const Json& answer, const std::string& pointer) {
   return pointer.empty() ? nullptr : json_at(answer, pointer);
 }
 
-/// The point of the compass that a text names; weather services write "VRB" for a direction that varies.
-std::optional<double> named_direction_deg(const Json* value) {
-  if (value == nullptr || !value->is_string()) return std::nullopt;
-  return compass_point_deg(trimmed(value->get_ref<const std::string&>()));
-}
-
-bool is_variable(const Json* value) {
-  return value != nullptr && value->is_string() && trimmed(value->get_ref<const std::string&>()) == "VRB";
-}
-
 void add_direction(const Json* value, DecodedWind& wind) {
-  wind.direction_deg = named_direction_deg(value);
-  if (wind.direction_deg || is_variable(value)) return;
-  const auto number = json_number(value);
-  if (number && *number) wind.direction_deg = wrapped_direction_deg(**number);
-  const bool is_missing = number ? !*number : number.error() == Refusal::kInvalid;
+  const auto direction_deg = json_direction(value);
+  if (direction_deg && *direction_deg) wind.direction_deg = wrapped_direction_deg(**direction_deg);
+  const bool is_missing = direction_deg ? !*direction_deg : direction_deg.error() == Refusal::kInvalid;
   if (!is_missing && !wind.direction_deg) wind.status = DecodedStatus::kUncertain;
 }
 

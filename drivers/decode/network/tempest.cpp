@@ -71,7 +71,7 @@ Result<DecodedWind, Refusal> wind_of(std::optional<double> speed_m_s, std::optio
   DecodedWind wind = {.speed_m_s = speed_m_s, .direction_deg = {}, .gust_m_s = gust_m_s};
   if (direction_deg) {
     wind.direction_deg = wrapped_direction_deg(*direction_deg);
-    if (!wind.direction_deg) return Refusal::kImplausible;
+    if (!wind.direction_deg) wind.status = DecodedStatus::kUncertain;  // the speed is still one
   }
   if (*speed_m_s == 0.0) wind.direction_deg.reset();
   return checked(wind);

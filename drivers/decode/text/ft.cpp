@@ -28,9 +28,13 @@ Result<DecodedWind, Refusal> decode_ft(const FtOptions& options, std::string_vie
   const auto speed_m_s = parse_number(fields[1].substr(kCommand.size()));
   if (!speed_m_s) return speed_m_s.error();
   const auto direction_deg = parse_direction_deg(fields[2]);
-  if (!direction_deg) return direction_deg.error();
   wind.speed_m_s = *speed_m_s;
-  wind.direction_deg = *direction_deg;
+  if (!direction_deg && !wind.speed_m_s) return direction_deg.error();
+  if (direction_deg) {
+    wind.direction_deg = *direction_deg;
+  } else {
+    wind.status = DecodedStatus::kUncertain;  // the speed is still one
+  }
   return checked(wind);
 }
 

@@ -54,10 +54,14 @@ GillResult decode_gill_values(const GillOptions& options, const TextFields& fiel
     wind.direction_deg = wrapped_direction_deg(from_deg < 0.0 ? from_deg + 360.0 : from_deg);
   } else {
     const auto direction_deg = parse_direction_deg(fields[1]);
-    if (!direction_deg) return direction_deg.error();
     const auto speed = parse_number(fields[2]);
     if (!speed) return speed.error();
-    wind.direction_deg = *direction_deg;
+    if (!direction_deg && !*speed) return direction_deg.error();
+    if (direction_deg) {
+      wind.direction_deg = *direction_deg;
+    } else {
+      wind.status = DecodedStatus::kUncertain;  // the speed is still one
+    }
     if (*speed) wind.speed_m_s = **speed * factor;
   }
 

@@ -30,7 +30,8 @@ bool is_word(std::string_view word, std::string_view capitals) {
   return true;
 }
 
-/// The wind, with its direction. An impossible one leaves the speed beside it, if there is one.
+/// The wind, with its direction. One that is impossible, or cannot be read, leaves the speed beside it, if there is
+/// one.
 NmeaResult with_direction(DecodedWind wind, const NmeaValue& direction_deg) {
   if (!direction_deg && !wind.speed_m_s) return direction_deg.error();
   if (direction_deg) wind.direction_deg = *direction_deg;
@@ -87,36 +88,61 @@ NmeaResult decode_mwv(const NmeaOptions& options, const TextFields& fields) {
     return Refusal::kMalformed;
   }
 
-  const NmeaValue direction_deg = parse_direction_deg(fields[1]);
-  if (!direction_deg && direction_deg.error() != Refusal::kImplausible) return direction_deg.error();
   const NmeaValue speed_m_s = speed_with_unit(fields, 3);
   if (!speed_m_s) return speed_m_s.error();
   wind.speed_m_s = *speed_m_s;
-  return with_direction(wind, direction_deg);
+  return with_direction(wind, parse_direction_deg(fields[1]));
 }
 
-/// The eight fields deg,T,deg,M,kn,N,m/s,M that MWD and MDA share, from field `at` on.
+/// The pairs deg,T,deg,M,kn,N,m/s,M that MWD and MDA share, from field `at` on. A pair can be absent, also with its
+/// letter: the letters determine what the numbers are. M is magnetic north in one of the first two pairs; it is m/s in
+/// the others, and behind M or N.
 NmeaResult decode_north(const TextFields& fields, std::size_t at) {
-  DecodedWind wind;
-  const bool is_true = !fields[at].empty();
-  const std::size_t direction = is_true ? at : at + 2;
-  const NmeaValue direction_deg = parse_direction_deg(fields[direction]);
-  if (!direction_deg && direction_deg.error() != Refusal::kImplausible) return direction_deg.error();
-  if (direction_deg && *direction_deg) {
-    if (capital(fields[direction + 1]) != (is_true ? "T" : "M")) return Refusal::kMalformed;
-    wind.reference = is_true ? WindReference::kNorth : WindReference::kMagnetic;
+  constexpr std::size_t kDirectionPairs = 2;
+  constexpr std::size_t kPairs = 4;
+  std::string_view true_deg;
+  std::string_view magnetic_deg;
+  std::optional<std::size_t> knots_at;
+  std::optional<std::size_t> metres_at;
+  bool has_magnetic = false;
+  bool has_unknown_direction = false;
+  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+    const std::size_t number = at + 2 * pair;
+    const std::string_view letter = capital(fields[number + 1]);
+    const bool can_be_direction = pair < kDirectionPairs && !knots_at && !has_magnetic;
+    if (letter == "T" && can_be_direction) {
+      true_deg = fields[number];
+    } else if (letter == "M" && can_be_direction) {
+      magnetic_deg = fields[number];
+      has_magnetic = true;
+    } else if (letter == "N") {
+      knots_at = number;
+    } else if (letter == "M") {
+      metres_at = number;
+    } else if (!fields[number].empty()) {
+      if (pair >= kDirectionPairs) return Refusal::kMalformed;
+      has_unknown_direction = true;
+    }
   }
 
-  const NmeaValue speed_m_s = first_speed(fields, {{at + 6, "M"}, {at + 4, "N"}});
-  if (!speed_m_s) return speed_m_s.error();
-  wind.speed_m_s = *speed_m_s;
+  DecodedWind wind;
+  for (const auto& speed_at : {metres_at, knots_at}) {
+    if (!speed_at || fields[*speed_at].empty()) continue;
+    const NmeaValue speed_m_s = speed_with_unit(fields, *speed_at);
+    if (!speed_m_s) return speed_m_s.error();
+    wind.speed_m_s = *speed_m_s;
+    break;
+  }
+  const bool is_true = !true_deg.empty();
+  if (!is_true && magnetic_deg.empty() && has_unknown_direction) return with_direction(wind, Refusal::kMalformed);
+  const NmeaValue direction_deg = parse_direction_deg(is_true ? true_deg : magnetic_deg);
+  if (direction_deg && *direction_deg) wind.reference = is_true ? WindReference::kNorth : WindReference::kMagnetic;
   return with_direction(wind, direction_deg);
 }
 
 /// $--VWR and VWT,0..180,L|R,kn,N,m/s,M,km/h,K
 NmeaResult decode_side(const TextFields& fields, WindReference reference) {
   const NmeaValue angle_deg = parse_direction_deg(fields[1]);
-  if (!angle_deg && angle_deg.error() != Refusal::kImplausible) return angle_deg.error();
   const NmeaValue speed_m_s = first_speed(fields, {{5, "M"}, {3, "N"}, {7, "K"}});
   if (!speed_m_s) return speed_m_s.error();
 
@@ -125,7 +151,7 @@ NmeaResult decode_side(const TextFields& fields, WindReference reference) {
   wind.reference = reference;
   if (!angle_deg || !*angle_deg) return with_direction(wind, angle_deg);
   const bool is_port = capital(fields[2]) == "L";
-  if (!is_port && capital(fields[2]) != "R") return Refusal::kMalformed;
+  if (!is_port && capital(fields[2]) != "R") return with_direction(wind, Refusal::kMalformed);
   return with_direction(wind, wrapped_direction_deg(is_port ? 360.0 - **angle_deg : **angle_deg));
 }
 
@@ -183,7 +209,7 @@ struct XdrStatistics {
 /// $--XDR and quadruples of type, value, unit, id. The mean is the reading and the greatest speed the gust.
 NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
   bool has_wind = false;
-  bool has_impossible_angle = false;  // it leaves the others
+  std::optional<Refusal> angle_refusal;  // an angle that cannot be read leaves the others
   XdrStatistics angles_deg;
   XdrStatistics speeds_m_s;
 
@@ -196,8 +222,8 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
     has_wind = true;
 
     const NmeaValue value = is_angle ? parse_direction_deg(fields[at + 1]) : speed_with_unit(fields, at + 1);
-    if (!value && is_angle && value.error() == Refusal::kImplausible) {
-      has_impossible_angle = true;
+    if (!value && is_angle) {
+      angle_refusal = value.error();
       continue;
     }
     if (!value) return value.error();
@@ -211,7 +237,7 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
   wind.speed_m_s = speeds_m_s.reading();
   wind.gust_m_s = speeds_m_s.greatest;
   const bool is_nothing_else = !wind.speed_m_s && !wind.direction_deg && !wind.gust_m_s;
-  if (has_impossible_angle && is_nothing_else) return Refusal::kImplausible;
+  if (angle_refusal && is_nothing_else) return *angle_refusal;
   return checked(wind);
 }
 

@@ -12,7 +12,8 @@ namespace yuragi::drivers::decode::text {
 // The wind in sentences of NMEA 0183, of any talker (WI, II, a number):
 //
 //   $--MWV,angle,R|T,speed,K|N|M|S,A|V*hh               from the bow, clockwise; R: apparent, T: true wind
-//   $--MWD,deg,T,deg,M,kn,N,m/s,M*hh                    from true north, from magnetic north
+//   $--MWD,deg,T,deg,M,kn,N,m/s,M*hh                    from true north, from magnetic north; a pair of number and
+//                                                       letter can be absent: $--MWD,deg,T,deg,M,m/s,M*hh
 //   $--VWR,0..180,L|R,kn,N,m/s,M,km/h,K*hh              from the bow to port or starboard, apparent
 //   $--VWT,...                                          the same, true wind
 //   $--MDA,<12 fields of weather>,deg,T,deg,M,kn,N,m/s,M*hh
@@ -33,9 +34,9 @@ struct NmeaOptions {
 
 /// The wind in one line, without its line end, or why there is none: as sentence_of() refuses, then kNotMine (another
 /// sentence, or XDR without wind), kMalformed (fields, units or letters that the sentence does not have, or no status
-/// where that is refused), kInvalid (by its status, or without a value), kImplausible. One half can be empty; an
-/// impossible direction is left empty if there is a speed beside it. If a sentence has the speed in several units, m/s
-/// is taken first. Thread-safe and realtime-safe: yes.
+/// where that is refused), kInvalid (by its status, or without a value), kImplausible. One half can be empty; a
+/// direction that is impossible, or cannot be read, is left empty if there is a speed beside it. If a sentence has the
+/// speed in several units, m/s is taken first. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;
 
 /// Returns the other quantities in one line, without its time; nullopt if the sentence is invalid, or has none. Values

@@ -129,7 +129,7 @@ Result<DecodedWind, Refusal> decode_wxt(const WxtOptions& options, std::string_v
   const auto speed = wxt_field(*fields, "Sm", kWxtSpeeds);
   const auto gust = wxt_field(*fields, "Sx", kWxtSpeeds);
   const auto direction = wxt_field(*fields, "Dm", kWxtDegrees);
-  if (!speed || !gust || !direction) return Refusal::kMalformed;
+  if (!speed || !gust || (!direction && !speed->value)) return Refusal::kMalformed;
   if (!speed->is_there && !gust->is_there && !direction->is_there) return Refusal::kNotMine;
   if (!speed->value) return Refusal::kInvalid;
 
@@ -137,10 +137,9 @@ Result<DecodedWind, Refusal> decode_wxt(const WxtOptions& options, std::string_v
   wind.reference = WindReference::kRelative;
   wind.speed_m_s = speed->value;
   wind.gust_m_s = gust->value;
-  if (direction->value) {
-    wind.direction_deg = wrapped_direction_deg(*direction->value);
-    if (!wind.direction_deg) wind.status = DecodedStatus::kUncertain;  // the speed is still one
-  }
+  if (direction && direction->value) wind.direction_deg = wrapped_direction_deg(*direction->value);
+  const bool is_missing = direction && !direction->value;
+  if (!is_missing && !wind.direction_deg) wind.status = DecodedStatus::kUncertain;  // the speed is still one
   return checked(wind);
 }
 

@@ -94,7 +94,10 @@ TEST(Ecowitt, LeavesOutWhatIsNoValue) {
 
 TEST(Ecowitt, RefusesWhatNoAnemometerMeasures) {
   EXPECT_TRUE(is_refused_as(wind_in_reply(reply_of("0b 04 b1")), Refusal::kImplausible)) << "120.1 m/s";
-  EXPECT_TRUE(is_refused_as(wind_in_reply(reply_of("0b 00 70 0a 02 d0")), Refusal::kImplausible)) << "720 degrees";
+  const auto impossible = wind_in_reply(reply_of("0b 00 70 0a 02 d0"));
+  ASSERT_TRUE(impossible) << "720 degrees leave the speed";
+  EXPECT_FALSE(impossible->direction_deg);
+  EXPECT_EQ(impossible->status, DecodedStatus::kUncertain);
 }
 
 TEST(Ecowitt, RefusesWhatIsNoSuchReply) {

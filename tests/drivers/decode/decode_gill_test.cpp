@@ -21,6 +21,13 @@ Result<DecodedWind, Refusal> decode_gill_body(std::string_view body, const text:
   return text::decode_gill(options, gill_frame(body));
 }
 
+TEST(GillLine, WithADirectionThatCannotBeReadKeepsItsSpeed) {
+  const auto wind = decode_gill_body("Q,2x9,002.74,M,00,");
+  EXPECT_TRUE(reads(wind, 2.74, {}));
+  EXPECT_EQ(wind->status, DecodedStatus::kUncertain);
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,2x9,,M,00,"), Refusal::kMalformed));
+}
+
 TEST(GillPolar, GivesSpeedInEachUnit) {
   EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,M,00,"), 2.74, 229.0));
   EXPECT_TRUE(reads(decode_gill_body("Q,229,002.74,N,00,"), 1.4096, 229.0));

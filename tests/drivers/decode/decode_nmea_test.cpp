@@ -117,9 +117,9 @@ TEST(NmeaLine, ThatIsNoWindSentenceIsNotMine) {
 
 TEST(NmeaLine, WithFieldsThatTheSentenceDoesNotHaveIsMalformed) {
   for (const std::string_view body :
-       {"WIMWV,12x,R,1.0,M,A", "WIMWV,12,R,1.0.0,M,A", "WIMWV,12,R,nan,M,A", "WIMWV,12,R,1e3,M,A", "WIMWV,12,Q,1.0,M,A",
-        "WIMWV,12,R,1.0,,A", "WIMWV,12,R,1.0,X,A", "WIMWV,12,R,0x1,M,A", "WIVWR,12,,1.0,N", "WIVWR,12,R,1.0,M",
-        "WIMWD,12,M,,,1.0,N", "WIMWV,12,R,inf,M,A", "WIMWV,12,R,.,M,A", "WIMWV,12,R,+-1,M,A"}) {
+       {"WIMWV,12x,R,,M,A", "WIMWV,12,R,1.0.0,M,A", "WIMWV,12,R,nan,M,A", "WIMWV,12,R,1e3,M,A", "WIMWV,12,Q,1.0,M,A",
+        "WIMWV,12,R,1.0,,A", "WIMWV,12,R,1.0,X,A", "WIMWV,12,R,0x1,M,A", "WIVWR,12,,,N", "WIVWR,12,R,1.0,M",
+        "WIMWD,12,T,,M,1.0,X", "WIMWD,12,X", "WIMWV,12,R,inf,M,A", "WIMWV,12,R,.,M,A", "WIMWV,12,R,+-1,M,A"}) {
     EXPECT_TRUE(is_refused(decode_body(body), Refusal::kMalformed)) << body;
   }
   EXPECT_TRUE(is_refused(decode_body("WIMWV" + std::string(200, ',')), Refusal::kMalformed));
@@ -140,6 +140,30 @@ TEST(NmeaMwd, PrefersTrueNorthAndMetresPerSecond) {
   const auto calm = decode_body("IIMWD,,T,,M,0.0,N,0.0,M");
   EXPECT_TRUE(reads(calm, 0.0, {}));
   EXPECT_EQ(calm->reference, WindReference::kUnknown);
+}
+
+/// As a boat's network sends it (sankeysoft/nmea_dashboard issue 31): the pair of the knots is left out.
+TEST(NmeaMwd, IsReadByItsLetters) {
+  const auto six = decode_body("WIMWD,322.8,T,333.9,M,4.5,M");
+  EXPECT_TRUE(reads(six, 4.5, 322.8));
+  EXPECT_EQ(six->reference, WindReference::kNorth);
+  EXPECT_TRUE(reads(decode_body("WIMWD,322.8,T,333.9,M,10.0,N"), 5.1444, 322.8));
+  EXPECT_TRUE(reads(decode_body("WIMWD,322.8,T,10.0,N,5.1,M"), 5.1, 322.8));
+  EXPECT_TRUE(reads(decode_body("WIMWD,322.8,T,,,4.5,M"), 4.5, 322.8));
+  EXPECT_TRUE(reads(decode_body("WIMWD,,,,,,,4.5,M"), 4.5, {}));
+  const auto magnetic = decode_body("WIMWD,333.9,M,4.5,M");
+  EXPECT_TRUE(reads(magnetic, 4.5, 333.9));
+  EXPECT_EQ(magnetic->reference, WindReference::kMagnetic);
+  EXPECT_TRUE(reads(decode_body("WIMWD,322.8,T,33.9,M"), {}, 322.8)) << "33.9 is no speed";
+}
+
+TEST(NmeaLine, WithADirectionThatCannotBeReadKeepsItsSpeed) {
+  EXPECT_TRUE(reads(decode_body("WIMWV,12x,R,1.0,M,A"), 1.0, {}));
+  EXPECT_TRUE(reads(decode_body("WIMWD,NW,T,,M,11.2,N,5.8,M"), 5.8, {}));
+  EXPECT_TRUE(reads(decode_body("WIMWD,12,X,,,1.0,M"), 1.0, {}));
+  EXPECT_TRUE(reads(decode_body("IIVWR,---,R,,,0.51,M,,"), 0.51, {}));
+  EXPECT_TRUE(reads(decode_body("IIVWR,12,,1.0,N"), 0.5144, {}));
+  EXPECT_TRUE(reads(decode_body("WIXDR,A,--,D,0,S,0.2,M,0"), 0.2, {}));
 }
 
 TEST(NmeaVwr, IsFromPortOrStarboardOfTheBow) {

@@ -89,7 +89,11 @@ TEST(Wmr300Packet, IsRefusedInGrades) {
   auto longer = packet;
   longer[1] = 55;
   EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(longer), Refusal::kMalformed));
-  EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(wmr300_packet(20, 10, 361)), Refusal::kImplausible));
+  const auto impossible = hid::decode_wmr300(wmr300_packet(20, 10, 361));
+  ASSERT_TRUE(impossible);
+  EXPECT_EQ(impossible->speed_m_s, 1.0);
+  EXPECT_FALSE(impossible->direction_deg);
+  EXPECT_EQ(impossible->status, DecodedStatus::kUncertain);
   EXPECT_TRUE(test::is_refused_as(hid::decode_wmr300(wmr300_packet(20, 1201, 90)), Refusal::kImplausible));
 }
 

@@ -120,8 +120,13 @@ TEST(Tempest, TakesTheLastOfSeveralObservations) {
 TEST(Tempest, RefusesWhatNoStationMeasures) {
   EXPECT_TRUE(is_refused_as(wind_in(rapid_wind("[1493322445,-0.1,128]")), Refusal::kImplausible));
   EXPECT_TRUE(is_refused_as(wind_in(rapid_wind("[1493322445,230,128]")), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused_as(wind_in(rapid_wind("[1493322445,2.3,-1]")), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused_as(wind_in(rapid_wind("[1493322445,2.3,1280]")), Refusal::kImplausible));
+  for (const char* values : {"[1493322445,2.3,-1]", "[1493322445,2.3,1280]"}) {
+    const auto wind = wind_in(rapid_wind(values));
+    ASSERT_TRUE(wind) << values;
+    EXPECT_EQ(wind->speed_m_s, 2.3);
+    EXPECT_FALSE(wind->direction_deg);
+    EXPECT_EQ(wind->status, DecodedStatus::kUncertain);
+  }
   std::string text(kObservation);
   text.replace(text.find("0.27"), 4, "0.21");
   EXPECT_TRUE(is_refused_as(wind_in(text), Refusal::kImplausible)) << "a gust below the mean";

@@ -72,11 +72,19 @@ TEST(Wxt, ThatIsHurtIsRefused) {
   // The first was seen on a line: the device had lost characters.
   EXPECT_TRUE(is_refused(decode_wind("Dn=0m=032D,Sm=0.1M,Ta=27.9C"), Refusal::kMalformed) ||
               reads(decode_wind("Dn=0m=032D,Sm=0.1M,Ta=27.9C"), 0.1, {}));
-  for (const char* fields : {"Dm=283D,Sm=1.M0M", "Dm=283D,Sm=", "Dm=283D,Sm=M", "Dm=28x3D,Sm=1.0M", "Dm283D,Sm=1.0M",
-                             "Sm=1.0M,Sm=2.0M", "Dm=283D,,Sm=1.0M", "Dm=283,Sm=1.0M", "Sm=1.0MSx=2.2M"}) {
+  for (const char* fields : {"Dm=283D,Sm=1.M0M", "Dm=283D,Sm=", "Dm=283D,Sm=M", "Dm283D,Sm=1.0M", "Sm=1.0M,Sm=2.0M",
+                             "Dm=283D,,Sm=1.0M", "Sm=1.0MSx=2.2M"}) {
     EXPECT_TRUE(is_refused(decode_wind(fields), Refusal::kMalformed)) << fields;
   }
   EXPECT_TRUE(is_refused(decode_wind("Sm=999.9M"), Refusal::kImplausible));
+}
+
+TEST(Wxt, WithADirectionThatCannotBeReadKeepsItsSpeed) {
+  for (const char* fields : {"Dm=28x3D,Sm=1.0M", "Dm=283,Sm=1.0M", "Dm=999D,Sm=1.0M"}) {
+    const auto wind = decode_wind(fields);
+    EXPECT_TRUE(reads(wind, 1.0, {})) << fields;
+    EXPECT_EQ(wind->status, DecodedStatus::kUncertain) << fields;
+  }
 }
 
 TEST(Wxt, WithAnImpossibleDirectionKeepsTheSpeed) {

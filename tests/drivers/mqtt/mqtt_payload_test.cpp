@@ -45,6 +45,25 @@ TEST(MqttPayload, ThatIsSomethingElse) {
   }
 }
 
+TEST(MqttPayload, CanBeADirection) {
+  const auto direction_of = [](std::string_view payload, const std::string& pointer) {
+    const auto direction_deg = Payload(payload).direction_at(pointer);
+    return direction_deg ? *direction_deg : std::nullopt;
+  };
+  EXPECT_EQ(direction_of("NW", ""), 315.0);
+  EXPECT_EQ(direction_of(" sse\n", ""), 157.5);
+  EXPECT_EQ(direction_of("270.5", ""), 270.5);
+  EXPECT_EQ(direction_of(R"({"d":"E"})", "/d"), 90.0);
+  EXPECT_EQ(direction_of(R"({"d":12})", "/d"), 12.0);
+  EXPECT_EQ(direction_of(R"({"d":null})", "/d"), std::nullopt);
+  for (const std::string_view payload : {"VRB", "unavailable", ""})
+    EXPECT_EQ(Payload(payload).direction_at("").error(), decode::Refusal::kInvalid) << payload;
+  for (const std::string_view payload : {"north", "NNN", "4,2"})
+    EXPECT_EQ(Payload(payload).direction_at("").error(), decode::Refusal::kMalformed) << payload;
+  EXPECT_EQ(Payload("{").direction_at("/d").error(), decode::Refusal::kMalformed);
+  EXPECT_EQ(Payload(R"({"d":true})").direction_at("/d").error(), decode::Refusal::kMalformed);
+}
+
 TEST(MqttPayload, InJsonStandsWhereThePointerSays) {
   const std::string_view tasmota =
       R"({"Time":"2024-06-01T12:00:00","TX23":{"Speed":{"Act":14.8,"Avg":8.5},"Dir":{"Card":"WSW","Deg":247.5}}})";

@@ -299,6 +299,17 @@ TEST(MqttDriver, LeavesTheSpeedBesideAnImpossibleDirection) {
   EXPECT_EQ(rtl_433.run.count(decode::Refusal::kImplausible), 3) << "and it is counted";
 }
 
+TEST(MqttDriver, ReadsACompassPointAndKeepsTheSpeedBesideAnotherWord) {
+  MosquittoBroker broker;
+  MqttRun run(broker, {{"speed_path", std::string("/v")}, {"direction_path", std::string("/d")}});
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", R"({"v": 4, "d": "NW"})"); }));
+  EXPECT_EQ(run.last().direction_deg, 315.0);
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", R"({"v": 5, "d": "up"})"); }));
+  EXPECT_EQ(run.last().speed_m_s, 5.0);
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+  EXPECT_EQ(run.last().quality, wind::ReadingQuality::kUncertain);
+}
+
 TEST(MqttDriver, ReadsOneOfSeveralStationsAndWarnsOfTheOthers) {
   Rtl433Run rtl_433;
   const std::string neighbour = R"({"model":"Fineoffset-WS80","id":"0a003b","wind_dir_deg":10,"wind_avg_m_s":2.4})";

@@ -1,4 +1,5 @@
 // The driver as the daemon opens it and runs it, with messages from liblo's own oscsend, and datagrams that are none.
+#include <bit>
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -210,6 +211,82 @@ TEST(OscDriver, KnowsWhatADaemonSendsBesideItsWind) {
   EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine));
 }
 
+/// A message of one float.
+std::string float_message(std::string address, float number) {
+  address += std::string(4 - address.size() % 4, '\0');
+  std::string message = address + ",f\0\0"s;
+  const auto bits = std::bit_cast<std::uint32_t>(number);
+  for (const unsigned shift : {24U, 16U, 8U, 0U}) message += static_cast<char>(bits >> shift);
+  return message;
+}
+
+const ParameterValues::Map kOneValueAnAddress = {{"address", std::string("/wind/speed")},
+                                                 {"direction_address", std::string("/wind/direction")},
+                                                 {"gust_address", std::string("/wind/gust")}};
+
+TEST(OscDriver, JoinsOneValueAnAddress) {
+  OscRun run(kOneValueAnAddress);
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind/speed", "f", "4.5"}); }));
+  EXPECT_FALSE(run.last().direction_deg.has_value()) << "none was sent";
+  run.send({"/wind/direction", "i", "277"});
+  run.send({"/wind/gust", "f", "6"});
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind/speed", "f", "5"}); }));
+  EXPECT_EQ(run.last().speed_m_s, 5.0);
+  EXPECT_EQ(run.last().direction_deg, 277.0);
+  EXPECT_EQ(run.last().gust_m_s, 6.0);
+  EXPECT_TRUE(run.all().refusals.empty());
+}
+
+TEST(OscDriver, JoinsTheValuesOfABundleInAnyOrder) {
+  OscRun run(kOneValueAnAddress);
+  const std::string speed = bundle_of(float_message("/wind/speed", 8.0F));
+  const std::string direction = bundle_of(float_message("/wind/direction", 277.0F));
+  const std::string gust = bundle_of(float_message("/wind/gust", 9.0F));
+  for (const std::string& bundle :
+       {speed + direction.substr(16) + gust.substr(16), gust + direction.substr(16) + speed.substr(16)}) {
+    ASSERT_TRUE(run.reads_after([&] { run.send_bytes(bundle); }));
+    EXPECT_EQ(run.last().speed_m_s, 8.0);
+    EXPECT_EQ(run.last().direction_deg, 277.0);
+    EXPECT_EQ(run.last().gust_m_s, 9.0);
+  }
+  EXPECT_EQ(run.count(), 2U);
+}
+
+TEST(OscDriver, UsesADirectionOfItsOwnAddressForAsLongAsHold) {
+  ParameterValues::Map given = kOneValueAnAddress;
+  given["hold"] = 0.1;
+  OscRun run(given);
+  ASSERT_TRUE(run.reads_after([&] { run.send_bytes(float_message("/wind/speed", 4.0F)); }));
+  run.send_bytes(float_message("/wind/direction", 90.0F));
+  const auto deadline = std::chrono::steady_clock::now() + 60s;
+  do {  // some are too frequent
+    const auto before = run.handled();
+    run.send_bytes(float_message("/wind/speed", 4.0F));
+    ASSERT_TRUE(run.has_handled(before + 1));
+  } while (run.last().direction_deg && std::chrono::steady_clock::now() < deadline);
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+}
+
+TEST(OscDriver, KeepsTheSpeedBesideAnImpossibleDirection) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "4.5", "-90"}); }));
+  EXPECT_EQ(run.last().speed_m_s, 4.5);
+  EXPECT_FALSE(run.last().direction_deg.has_value());
+  EXPECT_EQ(run.last().quality, wind::ReadingQuality::kUncertain);
+  EXPECT_EQ(run.count(decode::Refusal::kImplausible), 1);
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "ff", "4.5", "90"}); }));
+  ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "f", "4.5"}); }));
+  EXPECT_FALSE(run.last().direction_deg.has_value()) << "only an address of its own holds one";
+}
+
+TEST(OscDriver, NamesTheSettingsWhereSpeedsComeByThemselves) {
+  OscRun run;
+  run.send_when_it_listens(float_message("/wind/speed", 4.0F));
+  EXPECT_TRUE(run.reports("set address to \"/wind/speed\", and direction_address and gust_address"));
+  EXPECT_TRUE(run.reads_wind());
+  EXPECT_THAT(run.all().last_detail(), testing::Not(HasSubstr("direction_address")));
+}
+
 TEST(OscDriver, HasNoDirectionWhereNoneIsSent) {
   OscRun run;
   ASSERT_TRUE(run.reads_after([&] { run.send({"/wind", "f", "4.5"}); }));
@@ -366,6 +443,16 @@ TEST(OscDriver, RefusesAnAddressThatIsNone) {
         open_osc_sensor({{"address", std::string("wind")}});
       },
       ThrowsMessage<std::runtime_error>(HasSubstr("address: must begin with a slash")));
+  EXPECT_THAT(
+      [] {
+        open_osc_sensor({{"direction_address", std::string("wind/direction")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("direction_address: must begin with a slash")));
+  EXPECT_THAT(
+      [] {
+        open_osc_sensor({{"gust_address", std::string("/wind")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("gust_address: is the same as address")));
 }
 
 TEST(OscDatagram, HoldsOneMessageOrThoseOfABundle) {

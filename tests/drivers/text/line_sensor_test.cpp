@@ -126,6 +126,81 @@ TEST_F(LineSensorTest, DropsALineThatPausesInTheMiddle) {
   EXPECT_EQ(sink.count(decode::Refusal::kTooShort), 1);
 }
 
+TEST_F(LineSensorTest, JoinsOneValueALine) {
+  const ParameterValues::Map keys = {{"speed_key", std::string("WindSpeed")},
+                                     {"direction_key", std::string("WindDir")},
+                                     {"gust_key", std::string("WindGust")},
+                                     {"hold", 5.0}};
+  for (const std::string sign : {"=", "    = ", ": "}) {
+    sink.readings.clear();
+    make_line(keys);
+    receive("#\n");
+    for (const char* speed : {"0.5", "0.7"}) {
+      receive("WindDir" + sign + "79\nWindSpeed" + sign + speed + "\nWindGust" + sign + "1.5\nRain" + sign + "0.0\n");
+      run(1s);
+    }
+    ASSERT_EQ(sink.readings.size(), 2U) << sign;
+    EXPECT_EQ(sink.readings[0].speed_m_s, 0.5);
+    EXPECT_EQ(sink.readings[0].direction_deg, 79.0);
+    EXPECT_FALSE(sink.readings[0].gust_m_s) << "it comes behind the speed";
+    EXPECT_EQ(sink.readings[1].speed_m_s, 0.7);
+    EXPECT_EQ(sink.readings[1].direction_deg, 79.0);
+    EXPECT_EQ(sink.readings[1].gust_m_s, 1.5);
+
+    receive("WindDir" + sign + "nan\nWindSpeed" + sign + "0.8\n");
+    ASSERT_EQ(sink.readings.size(), 3U);
+    EXPECT_FALSE(sink.readings[2].direction_deg) << "the device has none any more";
+    EXPECT_EQ(sink.readings[2].gust_m_s, 1.5);
+    receive("WindDir" + sign + "90\n");
+    run(6s);
+    receive("WindSpeed" + sign + "0.9\n");
+    ASSERT_EQ(sink.readings.size(), 4U);
+    EXPECT_FALSE(sink.readings[3].direction_deg) << "it is older than `hold`";
+  }
+}
+
+TEST_F(LineSensorTest, TakesLinesOfSeveralShapesThatComeInTurn) {
+  make_line();
+  receive("#\n");
+  for (int block = 0; block < 4; ++block) receive("direction=90\nspeed=4 gust=6\n");
+  EXPECT_GE(sink.readings.size(), 3U);
+  EXPECT_EQ(sink.readings.back().direction_deg, 90.0);
+  EXPECT_LE(sink.count(decode::Refusal::kMalformed), 1);
+}
+
+TEST_F(LineSensorTest, KeepsTheSpeedBesideADirectionThatCannotBeRead) {
+  make_line({{"north_offset", 90.0}});
+  receive_line("4.2,NW");
+  receive("4.3,up\n");
+  ASSERT_EQ(sink.readings.size(), 2U);
+  EXPECT_EQ(sink.readings[0].direction_deg, 45.0);
+  EXPECT_EQ(sink.readings[1].speed_m_s, 4.3);
+  EXPECT_FALSE(sink.readings[1].direction_deg);
+  EXPECT_EQ(sink.readings[1].quality, wind::ReadingQuality::kUncertain);
+}
+
+TEST_F(LineSensorTest, ReportsWhatIsWrongWithTheSettingsAndNotWithTheDevice) {
+  const auto trouble_with = [this](const std::string& line, const ParameterValues::Map& given) {
+    far_end.incoming.clear();
+    make_line(given);
+    for (int i = 0; i < 20; ++i) {
+      receive(line + "\n");
+      run(250ms);
+    }
+    return sink.last_detail();
+  };
+  for (const char* line : {"WindSpeed = 1.0", "WindSpeed 1.0", "ready", "{\"ws\": 1}", "W;1;2;3"}) {
+    EXPECT_THAT(trouble_with(line, {}), HasSubstr("but without wind")) << line;
+    EXPECT_THAT(trouble_with(line, {{"speed_column", std::int64_t{6}}, {"direction_column", std::int64_t{7}}}),
+                HasSubstr("check that the settings match"))
+        << line;
+  }
+  const std::string trouble = trouble_with("WindDir=79", {{"direction_key", std::string("WindDir")}});
+  EXPECT_THAT(trouble, HasSubstr("none with a speed (\"WindDir=79\" has none): check speed_key"));
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
+  EXPECT_THAT(trouble_with("nan,270", {}), HasSubstr("without a value for the speed (the first: \"nan,270\")"));
+}
+
 TEST_F(LineSensorTest, ForgetsWhatAnArduinoSaysAsItStarts) {
   far_end.send("9.9,9\n9.9,9\n");
   make_line({{"delay_after_open", 2.0}});

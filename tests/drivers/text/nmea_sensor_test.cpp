@@ -260,6 +260,19 @@ TEST_F(NmeaSensorTest, TurnsDirectionsByTheMarkAndTheVariation) {
   expect_last(5.0, 10.0);
 }
 
+TEST_F(NmeaSensorTest, ReportsAnotherFormatAndNotTheCable) {
+  // Keys of a sketch that begin with a dollar sign, Gill's shape without its checksum, and a sentence of no wind.
+  for (const char* line : {"$,winddir=45,windspeedmph=2.0,#", "A,270,003.20,M", "WindSpeed = 1.0", "$GPRSA,,V,,V"}) {
+    make_nmea();
+    for (int i = 0; i < 20; ++i) {
+      receive(std::string(line) + "\r\n");
+      run(250ms);
+    }
+    EXPECT_THAT(sink.last_detail(), HasSubstr("check that the settings match")) << line;
+    EXPECT_THAT(sink.last_detail(), testing::Not(HasSubstr("cable"))) << line;
+  }
+}
+
 TEST_F(NmeaSensorTest, TakesLinesWithoutAChecksumWhereTheWireHasOneOfItsOwn) {
   make_nmea();
   for (int i = 0; i < 20; ++i) receive("$WIMWV,214.8,R,0.1,K\r\n");
