@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,6 +18,7 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/tools/decode/decode_formats.hpp"
+#include "daemon/tools/decode/recognise.hpp"
 #include "daemon/tools/decode/unit_reader.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/json_text.hpp"
@@ -107,9 +110,12 @@ class Output {
     write(json);
   }
 
-  /// For people, beside the output: how much was refused.
+  std::uint64_t readings() const { return readings_; }
+
+  /// For people, beside the output: how much was refused, or that nothing is a reading.
   void summary() const {
-    if (refused_.empty()) return;
+    if (refused_.empty() && readings_ > 0) return;
+    if (refused_.empty()) return fmt::print(stderr, "decode: no reading\n");
     std::string reasons;
     for (const auto& [why, count] : refused_)
       reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", why, count);
@@ -159,7 +165,8 @@ void decode_input(DecodeCommandOptions& options) {
   Input input(options.file);
   Output output(options.shows_refused);
 
-  std::string_view text;  // of the present message
+  std::vector<std::string> first_lines;  // which another format may read
+  std::string_view text;                 // of the present message
   const auto outcome = [&](const tools::decode::UnitDecoder::Outcome& decoded) {
     if (decoded) {
       output.reading(*decoded);
@@ -170,6 +177,9 @@ void decode_input(DecodeCommandOptions& options) {
   const auto message = [&](const tools::decode::ReadUnit& unit) {
     if (unit.why) return output.refusal(*unit.why, unit.detail, unit.text);
     text = unit.text;
+    constexpr std::size_t kLinesToRecognise = 200;
+    if (format.is_text && first_lines.size() < kLinesToRecognise)
+      first_lines.emplace_back(reinterpret_cast<const char*>(unit.bytes.data()), unit.bytes.size());
     decoder->take({unit.bytes, unit.request}, outcome);
   };
 
@@ -182,6 +192,9 @@ void decode_input(DecodeCommandOptions& options) {
   text = {};
   decoder->finish(outcome);
   output.summary();
+  if (output.readings() > 0) return;
+  if (const std::string other = tools::decode::recognised_text(first_lines); !other.empty())
+    fmt::print(stderr, "decode: the format {} reads them\n", other);
 }
 
 std::string footer() {

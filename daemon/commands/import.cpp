@@ -18,6 +18,7 @@
 #include "daemon/commands/lock_recording.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
 #include "daemon/tools/csv/csv_preview.hpp"
+#include "daemon/tools/decode/recognise.hpp"
 #include "daemon/tools/logs/log_import.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
@@ -153,7 +154,14 @@ Result<tools::csv::ImportReport, Failure> import_any(const ImportOptions& option
   }
   auto report = format == Format::kLog ? tools::logs::import_log(input, options.input, log, sinks)
                                        : tools::csv::import_csv(input, options.input, csv, sinks);
-  if (report && input.encoding() != tools::csv::Encoding::kUtf8)
+  if (!report) {
+    // The decoders know messages that no log of them is imported of.
+    const std::string other = tools::decode::recognised_text(*lines);
+    return other.empty() ? report
+                         : Failure{fmt::format("{}; `yuragi decode` reads them as {}", report.error().message, other),
+                                   report.error().kind};
+  }
+  if (input.encoding() != tools::csv::Encoding::kUtf8)
     report->notes.insert(report->notes.begin(), fmt::format("text in {}", name_of(input.encoding())));
   return report;
 }

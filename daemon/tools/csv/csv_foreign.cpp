@@ -44,7 +44,8 @@ std::optional<std::string_view> foreign_kind(std::string_view beginning) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (beginning.starts_with(kByteOrderMark)) beginning.remove_prefix(kByteOrderMark.size());
   constexpr std::size_t kLongest = 16;
-  const std::string start = lower(without_blanks(beginning).substr(0, kLongest));
+  const auto first = std::min(beginning.find_first_not_of(" \t\r\n"), beginning.size());
+  const std::string start = lower(beginning.substr(first, kLongest));
   const auto* const found =
       std::ranges::find_if(kKinds, [&](const Kind& kind) { return start.starts_with(kind.begin); });
   if (found != kKinds.end()) return found->what;

@@ -81,10 +81,11 @@ std::string_view in_place_of_unit(std::string_view name) {
   return comma == std::string_view::npos ? std::string_view() : without_blanks(name.substr(comma + 1));
 }
 
-/// The statistic that words in brackets name: "(10 min max)".
+/// The statistic that words in brackets name: "(10 min max)", in which "min" is of minutes.
 Statistic statistic_in(std::string_view remark) {
   std::vector<std::string> words = words_of(remark);
   if (std::ranges::find(words, "gust") != words.end()) return Statistic::kMax;
+  if (words.size() > 1 && is_all_digits(words[0])) words.erase(words.begin(), words.begin() + 2);
   words.insert(words.begin(), "");
   return take_statistic(words);
 }
@@ -107,18 +108,19 @@ bool is_remark(std::string_view text) {
 
 Name parse_name(std::string_view text) {
   text = without_serial_numbers(text);
+  const std::string_view remark = in_place_of_unit(text);
+  if (!remark.empty() && !is_any_unit(remark)) {
+    Name name = parse_name(text.substr(0, static_cast<std::size_t>(remark.data() - text.data()) - 1));
+    if (name.statistic == Statistic::kMean) name.statistic = statistic_in(remark);
+    if (name.unit_words.empty() && name.unknown_unit.empty() && !is_remark(remark)) name.unknown_unit = remark;
+    return name;
+  }
+
   Name name;
   std::vector<std::string> words = words_of(text);
   // The statistic stands before the unit or behind it: WS_ms_Avg, wind_speed_mean_m_s.
   name.statistic = take_statistic(words);
   take_unit(words, name);
-  const std::string_view remark = in_place_of_unit(text);
-  if (name.unit_words.empty() && !remark.empty()) {
-    Name base = parse_name(text.substr(0, static_cast<std::size_t>(remark.data() - text.data()) - 1));
-    if (base.statistic == Statistic::kMean) base.statistic = statistic_in(remark);
-    if (base.unit_words.empty() && base.unknown_unit.empty() && !is_remark(remark)) base.unknown_unit = remark;
-    return base;
-  }
   const Statistic before = take_statistic(words);
   if (name.statistic == Statistic::kMean) name.statistic = before;
   // A height is not part of the name.

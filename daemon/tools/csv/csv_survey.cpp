@@ -108,6 +108,8 @@ class SecondsTally {
       return "they look like hours and minutes (1359 and then 1400)";
     const auto even =
         std::ranges::count_if(steps_, [usual](std::int64_t step) { return 2 * step > usual && 2 * step < 3 * usual; });
+    constexpr std::size_t kMinSteps = 10;
+    if (steps_.size() < kMinSteps) return std::nullopt;
     constexpr double kEven = 0.8;
     if (static_cast<double>(even) < kEven * static_cast<double>(steps_.size())) return "their steps are uneven";
     return std::nullopt;

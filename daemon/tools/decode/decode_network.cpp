@@ -41,11 +41,22 @@ class TempestDecoder final : public UnitDecoder {
     if (message->kind == network::TempestKind::kOther) return sink(UnitRefusal{Refusal::kNotMine, "no wind"});
     if (!station_.is(message->serial_number)) return sink(UnitRefusal{Refusal::kNotMine, "another station"});
     if (!winds_.is_new(*message)) return;
-    if (!message->wind || winds_.is_wind(*message)) sink(outcome_of(message->wind));
+    if (!message->wind || winds_.is_wind(*message)) {
+      has_shown_ = true;
+      sink(outcome_of(message->wind));
+    } else if (!has_shown_) {
+      waiting_ = message->wind;
+    }
+  }
+  /// An observation alone shows only then that no rapid wind belongs to it.
+  void finish(const Sink& sink) override {
+    if (!has_shown_ && waiting_) sink(outcome_of(*waiting_));
   }
 
  private:
   FirstStation station_;
+  std::optional<Result<drivers::decode::DecodedWind, Refusal>> waiting_;
+  bool has_shown_ = false;
   network::TempestWinds winds_;
 };
 

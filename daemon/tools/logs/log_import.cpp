@@ -28,6 +28,7 @@ struct LogContents {
   std::map<std::string, std::size_t, std::less<>> sources;  ///< readings with a speed, by source
   std::size_t leading_times = 0;
   std::size_t own_times = 0;
+  std::size_t times_of_day = 0;
   std::size_t messages = 0;
   std::size_t lines = 0;
   std::map<decode::Refusal, std::size_t> refusals;  ///< of messages without a wind
@@ -46,6 +47,7 @@ LogContents contents_of(std::istream& in, const LogOptions& options) {
     ++contents.messages;
     if (leading_time(message->prefix, options.table.time_format)) ++contents.leading_times;
     if (message->time) ++contents.own_times;
+    if (message->time_of_day) ++contents.times_of_day;
     constexpr std::size_t kMaxSources = 100;
     const bool is_new = contents.sources.size() < kMaxSources;
     if (is_new || contents.sources.contains(message->source)) ++contents.sources[message->source];
@@ -88,13 +90,14 @@ std::string chosen_source(const LogContents& contents, const LogOptions& options
 }
 
 /// Where the times of readings come from.
-enum class TimeSource : std::uint8_t { kStart, kLeading, kOwn, kClock };
+enum class TimeSource : std::uint8_t { kStart, kLeading, kOwn, kClock, kTimeOfDay };
 
 std::optional<TimeSource> time_source_of(const LogContents& contents, const LogOptions& options) {
   if (options.start && options.interval) return TimeSource::kStart;
   if (2 * contents.leading_times > contents.messages) return TimeSource::kLeading;
   if (2 * contents.own_times > contents.messages) return TimeSource::kOwn;
   if (contents.has_clock) return TimeSource::kClock;
+  if (options.start && 2 * contents.times_of_day > contents.messages) return TimeSource::kTimeOfDay;
   return std::nullopt;
 }
 
@@ -137,7 +140,7 @@ class LogImport {
       ++passed_over_;
       return true;
     }
-    if (message->source != source_) {
+    if (message->source != source_ || (!message->wind && message->quantities)) {
       take_quantities(*message);
       return true;
     }
@@ -155,6 +158,10 @@ class LogImport {
       if (!clock_.now()) return csv::RowRefusal{"no time has been received yet"};
       return *clock_.now();
     }
+    if (time_source_ == TimeSource::kTimeOfDay) {
+      if (!message.time_of_day) return csv::RowRefusal{"no time in the message"};
+      return on_day(*message.time_of_day);
+    }
     const bool is_leading = time_source_ == TimeSource::kLeading;
     const auto written = is_leading ? leading_time(message.prefix, options_.table.time_format) : message.time;
     if (!written) return csv::RowRefusal{is_leading ? "no time before the message" : "no time in the message"};
@@ -162,6 +169,14 @@ class LogImport {
     const auto utc = options_.table.zone.value_or(csv::Zone()).to_utc(written->clock, last_);
     if (!utc) return csv::RowRefusal{"a time that does not exist in the zone; check --zone"};
     return *utc;
+  }
+
+  /// On the day of --start, or, shortly after midnight, on the next one.
+  UtcTime on_day(Nanoseconds time_of_day) const {
+    constexpr Nanoseconds kDay = std::chrono::hours(24);
+    UtcTime time = std::chrono::floor<std::chrono::days>(last_.value_or(*options_.start)) + time_of_day;
+    if (last_ && *last_ - time > kDay / 2) time += kDay;
+    return time;
   }
 
   Result<void, csv::RowRefusal> take(const LogMessage& message) {
@@ -242,11 +257,14 @@ Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::stri
   if (source.empty()) return Failure{name + ": no line has the sentence " + options.sentence + " with a speed"};
   const auto time_source = time_source_of(contents, options);
   if (!time_source) {
-    return Failure{fmt::format(
-        "{}: {} from {} in {}, but no time was found, neither before the messages, nor in them, nor in RMC or ZDA; add "
-        "--start 2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, if a time stands before "
-        "them)",
-        name, count_text(contents.sources.at(source), "wind"), source, count_text(contents.lines, "line"))};
+    const std::string found = fmt::format("{}: {} from {} in {}", name, count_text(contents.sources.at(source), "wind"),
+                                          source, count_text(contents.lines, "line"));
+    if (2 * contents.times_of_day > contents.messages)
+      return Failure{found + ", with the time of the day alone; add --start with the first day (--start 2023-06-25)"};
+    return Failure{found +
+                   ", but no time was found, neither before the messages, nor in them, nor in RMC or ZDA; add --start "
+                   "2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, if a time stands "
+                   "before them)"};
   }
   auto report = LogImport(name, options, sinks, source, *time_source).run(input.second_pass());
   if (!report) return report;
@@ -266,6 +284,9 @@ Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::stri
       break;
     case TimeSource::kOwn:
       columns.push_back("time from the messages" + zone);
+      break;
+    case TimeSource::kTimeOfDay:
+      columns.emplace_back("time from the messages, the day from --start");
       break;
     case TimeSource::kClock:
       columns.emplace_back("time from RMC, ZDA, GLL or GGA, which may be up to their interval old");

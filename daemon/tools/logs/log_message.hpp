@@ -21,6 +21,7 @@ struct LogMessage {
   Result<drivers::decode::DecodedWind, drivers::decode::Refusal> wind = drivers::decode::Refusal::kNotMine;
   std::optional<wind::StationQuantities> quantities = {};  ///< without its time
   std::optional<csv::Time> time = {};                      ///< which it has itself
+  std::optional<Nanoseconds> time_of_day = {};             ///< the same without a day
 };
 
 }  // namespace yuragi::daemon::tools::logs

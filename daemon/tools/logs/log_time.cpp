@@ -11,17 +11,6 @@ namespace {
 
 namespace decode = drivers::decode;
 
-/// hhmmss, with or without a fraction.
-std::optional<Nanoseconds> time_of_day_in(std::string_view field) {
-  if (field.size() < 6) return std::nullopt;
-  const std::string text = "2000-01-01 " + std::string(field.substr(0, 2)) + ":" + std::string(field.substr(2, 2)) +
-                           ":" + std::string(field.substr(4));
-  const auto time = csv::parse_time(text, csv::TimeFormat::kIso);
-  constexpr std::chrono::sys_days kDay = std::chrono::year(2000) / 1 / 1;
-  if (!time || time->utc_offset) return std::nullopt;
-  return time->clock - UtcTime(kDay);
-}
-
 std::optional<std::chrono::sys_days> day_in(std::string_view day, std::string_view month, std::string_view year) {
   const auto time = csv::parse_time(std::string(day) + "/" + std::string(month) + "/" + std::string(year),
                                     csv::TimeFormat::kDayFirst);
@@ -52,6 +41,18 @@ std::optional<csv::Time> time_in(std::string_view text, csv::TimeFormat format) 
 }
 
 }  // namespace
+
+std::optional<Nanoseconds> time_of_day_in(std::string_view text) {
+  if (text.size() < 6) return std::nullopt;
+  const bool has_colons = text[2] == ':';
+  const std::string clock = has_colons ? std::string(text)
+                                       : std::string(text.substr(0, 2)) + ":" + std::string(text.substr(2, 2)) + ":" +
+                                             std::string(text.substr(4));
+  const auto time = csv::parse_time("2000-01-01 " + clock, csv::TimeFormat::kIso);
+  constexpr std::chrono::sys_days kDay = std::chrono::year(2000) / 1 / 1;
+  if (!time || time->utc_offset) return std::nullopt;
+  return time->clock - UtcTime(kDay);
+}
 
 bool NmeaClock::take(std::string_view line) {
   const auto sentence = decode::sentence_of(line, decode::WhenMissing::kAccept);

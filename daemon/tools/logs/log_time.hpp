@@ -24,6 +24,9 @@ class NmeaClock {
   std::optional<UtcTime> now_;
 };
 
+/// "17:33:21.179", "173321.107": since midnight. Nullopt if it is no such time.
+std::optional<Nanoseconds> time_of_day_in(std::string_view text);
+
 /// The time that a logger wrote before a message: "2023-06-25 22:00:00.5,", "[1687730400.25] ", "1687730400153;A;", or
 /// the "c:" of an NMEA 4 tag block. Nullopt if it is not a time with a date. `format`: kAuto takes ISO 8601, digits and
 /// Unix times, but no dates of which day and month could be either.

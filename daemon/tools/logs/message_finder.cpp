@@ -165,7 +165,36 @@ std::optional<LogMessage> MessageFinder::json_message(std::string_view text) {
   return std::nullopt;
 }
 
+/// A line of NMEA 2000, whatever it is about; a wind's source has its frame.
+std::optional<LogMessage> MessageFinder::bus_message(std::string_view line) {
+  const auto format = decode::marine::bus_line_format_of(line);
+  if (!format) return std::nullopt;
+  if (format == decode::marine::BusLineFormat::kCanboat && line.find("\"pgn\"") == std::string_view::npos)
+    return std::nullopt;
+  LogMessage message;
+  const auto decoded = bus_.decode(line);
+  if (!decoded) {
+    // Other lines can begin in the same way.
+    if (decoded.error() == Refusal::kMalformed || decoded.error() == Refusal::kTooShort) return std::nullopt;
+    message.wind = decoded.error();
+  } else {
+    message.wind = decoded->wind;
+    message.source =
+        fmt::format("NMEA 2000 ({}), {}", decode::marine::kBusLineFormatNames[static_cast<std::size_t>(*format)],
+                    name_of(decoded->wind.reference));
+  }
+  const auto time = decode::marine::bus_line_time(line);
+  if (!time) return message;
+  if (time->clock == decode::marine::BusLineClock::kMidnight) {
+    message.time_of_day = time_of_day_in(time->text);
+  } else {
+    message.time = leading_time(time->text, csv::TimeFormat::kAuto);
+  }
+  return message;
+}
+
 std::optional<LogMessage> MessageFinder::find(std::string_view line) {
+  if (auto message = bus_message(line)) return message;
   if (const auto brace = line.find('{'); brace != std::string_view::npos) {
     if (auto message = json_message(line.substr(brace))) {
       message->prefix = line.substr(0, brace);
@@ -177,7 +206,7 @@ std::optional<LogMessage> MessageFinder::find(std::string_view line) {
   if (dollar != std::string_view::npos) {
     auto message = dollar_message(line, dollar);
     // A microcontroller's keys can begin with it, too.
-    if (message.source.empty() && line.find('=', dollar) != std::string_view::npos) {
+    if (!message.wind && line.find('=', dollar) != std::string_view::npos) {
       if (auto keys = keys_.take(line)) return keys;
     }
     return message;

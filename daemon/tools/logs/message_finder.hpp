@@ -8,13 +8,15 @@
 
 #include "daemon/tools/logs/key_reader.hpp"
 #include "daemon/tools/logs/log_message.hpp"
+#include "drivers/decode/marine/bus_line.hpp"
 #include "drivers/decode/network/tempest.hpp"
 
 namespace yuragi::daemon::tools::logs {
 
 /// What finds messages, for people.
 inline constexpr const char* kMessagesThatAreFound =
-    "NMEA 0183, Gill, FT, UMB, Vaisala WXT, Tempest, WeatherLink Live, Signal K, and keys in text, JSON or what "
+    "NMEA 0183, NMEA 2000, Gill, FT, UMB, Vaisala WXT, Tempest, WeatherLink Live, Signal K, and keys in text, JSON or "
+    "what "
     "stations "
     "push (\"speed=4.2 direction=270\", wind_avg_m_s, windspeedmph)";
 
@@ -22,7 +24,7 @@ inline constexpr const char* kMessagesThatAreFound =
 class MessageFinder {
  public:
   /// Uses what KeyReader uses.
-  explicit MessageFinder(const csv::ImportOptions& options) : keys_(options) {}
+  explicit MessageFinder(const csv::ImportOptions& options) : keys_(options), bus_({}) {}
 
   /// The message in a line, or, of one key a line, the one that it ends; nullopt if there is none.
   std::optional<LogMessage> find(std::string_view line);
@@ -37,8 +39,10 @@ class MessageFinder {
  private:
   std::optional<LogMessage> json_message(std::string_view text);
   std::optional<LogMessage> tempest_message(std::string_view text);
+  std::optional<LogMessage> bus_message(std::string_view line);
 
   KeyReader keys_;
+  drivers::decode::marine::BusLineDecoder bus_;
   std::map<std::string, drivers::decode::network::TempestWinds> tempests_;
 };
 

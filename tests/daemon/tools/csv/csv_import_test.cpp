@@ -602,7 +602,8 @@ TEST(CsvImport, NumbersWithoutADateAreSecondsOnlyIfTheyCanBe) {
   EXPECT_THAT(failure("time", {"0", "1", "2", "59", "100", "101"}), HasSubstr("hours and minutes"));
   EXPECT_THAT(failure("time", {"22", "23", "24", "1", "2"}), HasSubstr("they begin again"));
   EXPECT_THAT(failure("time", {"2018", "2018", "2018", "2018"}), HasSubstr("do not grow"));
-  EXPECT_THAT(failure("time", {"1", "2", "9", "40", "41", "200.5"}), HasSubstr("uneven"));
+  EXPECT_THAT(failure("time", {"1", "2", "9", "40", "41", "60.5", "62", "80", "99", "120", "121", "150"}),
+              HasSubstr("uneven"));
   EXPECT_EQ(failure("time", {"0", "0.1", "0.2", "0.3", "0.4"}), "");
   EXPECT_EQ(failure("time_s", {"1", "2", "9", "40", "41", "200.5"}), "") << "its name states it";
 }
@@ -718,6 +719,42 @@ TEST(CsvImport, ReadsPvgisAndNasaPower) {
   ASSERT_EQ(power.readings.size(), 1U) << power.failure;
   EXPECT_EQ(power.readings[0].speed_m_s, 3.1);
   EXPECT_EQ(power.readings[0].time.utc, utc(2020, 1, 1, 0));
+}
+
+TEST(CsvEncoding, IsFoundByTheBytes) {
+  EXPECT_EQ(encoding_of("time,speed\n"), Encoding::kUtf8);
+  EXPECT_EQ(encoding_of("Böe"), Encoding::kUtf8);
+  EXPECT_EQ(encoding_of(std::string("B\xC3", 2)), Encoding::kUtf8) << "cut in two";
+  EXPECT_EQ(encoding_of("B\xF6"
+                        "e (km/h),Richtung (\xB0)"),
+            Encoding::kLatin1);
+  EXPECT_EQ(encoding_of("\x95\x97\x91\xAC(m/s),\x95\x97\x8C\xFC"), Encoding::kShiftJis);
+  EXPECT_EQ(encoding_of(std::string("\xFF\xFEt\0i\0", 6)), Encoding::kUtf16Little);
+  EXPECT_EQ(encoding_of(std::string("\0t\0i\0m\0e", 8)), Encoding::kUtf16Big);
+}
+
+TEST(CsvEncoding, AnotherOneIsConvertedAndCanBeReadTwice) {
+  std::istringstream latin(
+      "Zeit,B\xF6"
+      "e\n1,2\n");
+  Input input(latin);
+  EXPECT_EQ(input.encoding(), Encoding::kLatin1);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::string text;
+    std::getline(pass == 0 ? input.first_pass() : input.second_pass(), text);
+    EXPECT_EQ(text, "Zeit,Böe");
+  }
+  std::string wide;
+  for (const char c : std::string("time,speed\n0,4.5\n")) wide += {c, '\0'};
+  const auto imported = import_text("\xFF\xFE" + wide);
+  ASSERT_EQ(imported.readings.size(), 1U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].speed_m_s, 4.5);
+}
+
+TEST(CsvForeign, WhatIsNoTextHasAName) {
+  EXPECT_THAT(import_text("\x1F\x8B\x08 compressed").failure, HasSubstr("gzip"));
+  EXPECT_THAT(import_text("\n<!DOCTYPE html><p>wind").failure, HasSubstr("web page"));
+  EXPECT_THAT(import_text(std::string("time,speed\0\0\0", 13)).failure, HasSubstr("binary data"));
 }
 
 }  // namespace

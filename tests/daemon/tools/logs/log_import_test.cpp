@@ -111,6 +111,107 @@ TEST(LogImport, IsToldFromATable) {
   EXPECT_FALSE(looks_like_log({}, {}));
 }
 
+TEST(LogImport, KeysNameTheWindAsColumnsDo) {
+  const auto json = imported_from(
+      R"({"time" : "2023-06-25 22:00:00", "model" : "WS80", "id" : 7, "wind_dir_deg" : 313, "wind_avg_km_h" : 7.2, "wind_max_m_s" : 3.0})"
+      "\n"
+      R"({"time" : "2023-06-25 22:00:05", "model" : "WS80", "id" : 7, "temperature_C" : 20.5})"
+      "\n");
+  ASSERT_EQ(json.readings.size(), 1U) << json.failure;
+  EXPECT_EQ(json.readings[0].speed_m_s, 2.0);
+  EXPECT_EQ(json.readings[0].direction_deg, 313.0);
+  EXPECT_EQ(json.readings[0].gust_m_s, 3.0);
+  EXPECT_EQ(json.readings[0].time.utc, kEvening);
+
+  const auto pushed = imported_from(
+      "GET /weatherstation/updateweatherstation.php?ID=x&dateutc=2023-06-25+22%3A00%3A00&windspeedmph=10&winddir=NW"
+      "&windgustmph=-9999 HTTP/1.1\n");
+  ASSERT_EQ(pushed.readings.size(), 1U) << pushed.failure;
+  EXPECT_NEAR(pushed.readings[0].speed_m_s, 4.4704, 1e-12);
+  EXPECT_EQ(pushed.readings[0].direction_deg, 315.0);
+  EXPECT_EQ(pushed.readings[0].gust_m_s, std::nullopt);
+  EXPECT_EQ(pushed.readings[0].time.utc, kEvening);
+
+  const auto text = imported_from("2023-06-25T22:00:00Z Wind Speed: 15.1 km/h, Direction: 270 deg, Gust: nan\n");
+  ASSERT_EQ(text.readings.size(), 1U) << text.failure;
+  EXPECT_NEAR(text.readings[0].speed_m_s, 15.1 / 3.6, 1e-12);
+  EXPECT_EQ(text.readings[0].direction_deg, 270.0);
+}
+
+TEST(LogImport, KeysAndUnitsCanBeGiven) {
+  LogOptions options;
+  options.table.columns[static_cast<std::size_t>(csv::Role::kSpeed)] = "anemo";
+  options.table.columns[static_cast<std::size_t>(csv::Role::kDirection)] = "vane";
+  options.table.unit = csv::find_speed_unit("kn");
+  const auto imported = imported_from("2023-06-25T22:00:00Z $,anemo=10,vane=90,speed=3\n", options);
+  ASSERT_EQ(imported.readings.size(), 1U) << imported.failure;
+  EXPECT_NEAR(imported.readings[0].speed_m_s, 10.0 * 1852.0 / 3600.0, 1e-12);
+  EXPECT_EQ(imported.readings[0].direction_deg, 90.0);
+}
+
+TEST(LogImport, OneKeyALineIsAMessageForEachTurn) {
+  LogOptions options;
+  options.start = kEvening;
+  options.interval = 2s;
+  const auto imported = imported_from(
+      "WindDir      = 79\nWindSpeed    = 0.5\nWindGust     = 0.6\nGXTS04Temp   = 24.4\n"
+      "WindDir      = 85\nWindSpeed    = 1.7\nWindGust     = 2.1\nGXTS04Temp   = 24.4\n",
+      options);
+  ASSERT_EQ(imported.readings.size(), 2U) << imported.failure;
+  EXPECT_EQ(imported.readings[0].direction_deg, 79.0);
+  EXPECT_EQ(imported.readings[0].gust_m_s, 0.6);
+  EXPECT_EQ(imported.readings[1].speed_m_s, 1.7);
+  EXPECT_EQ(imported.readings[1].direction_deg, 85.0);
+  EXPECT_EQ(imported.readings[1].time.utc, kEvening + 2s);
+}
+
+TEST(LogImport, ReadsWhatStationsSendWithTheirTimes) {
+  const auto wxt =
+      imported_from("1687730400\t0R1,Dn=059D,Dm=066D,Dx=080D,Sn=8.5M,Sm=9.5M,Sx=10.3M\n1687730400\t0R2,Ta=13.9C\n");
+  ASSERT_EQ(wxt.readings.size(), 1U) << wxt.failure;
+  EXPECT_EQ(wxt.readings[0].speed_m_s, 9.5);
+  EXPECT_EQ(wxt.readings[0].time.utc, kEvening);
+  ASSERT_EQ(wxt.quantities.size(), 1U);
+
+  const auto tempest =
+      imported_from(R"({"serial_number":"ST-1","type":"device_status","hub_sn":"HB-1","timestamp":1687730399})"
+                    "\n"
+                    R"({"serial_number":"ST-1","type":"rapid_wind","hub_sn":"HB-1","ob":[1687730400,2.3,128]})"
+                    "\n");
+  ASSERT_EQ(tempest.readings.size(), 1U) << tempest.failure;
+  EXPECT_EQ(tempest.readings[0].direction_deg, 128.0);
+  EXPECT_EQ(tempest.readings[0].time.utc, kEvening);
+
+  const auto davis = imported_from(
+      R"({"did":"1","ts":1687730400,"conditions":[{"data_structure_type":1,"txid":1,"wind_speed_last":10,"wind_dir_last":90}]})"
+      "\n");
+  ASSERT_EQ(davis.readings.size(), 1U) << davis.failure;
+  EXPECT_NEAR(davis.readings[0].speed_m_s, 4.4704, 1e-9);
+  EXPECT_EQ(davis.readings[0].time.utc, kEvening);
+}
+
+TEST(LogImport, ReadsNmea2000WithItsTimes) {
+  const auto plain = imported_from(
+      "2023-06-25T22:00:00.000Z,2,127250,3,255,8,ff,aa,00,ff,7f,ff,7f,fd\n"
+      "2023-06-25T22:00:00.500Z,2,130306,3,255,8,09,f4,01,10,27,fa,ff,ff\n");
+  ASSERT_EQ(plain.readings.size(), 1U) << plain.failure;
+  EXPECT_EQ(plain.readings[0].speed_m_s, 5.0);
+  EXPECT_NEAR(*plain.readings[0].direction_deg, 57.2957795, 1e-6) << "1.0000 rad";
+  EXPECT_EQ(plain.readings[0].time.utc, kEvening + 500ms);
+  EXPECT_THAT(plain.report.columns,
+              testing::Contains(HasSubstr("NMEA 2000 (canboat-plain), relative: 1 wind in 2 lines")));
+
+  const std::string raw =
+      "23:59:59.500 R 09FD0203 09 F4 01 10 27 FA FF FF\n00:00:00.250 R 09FD0203 09 F4 01 10 27 FA FF FF\n";
+  EXPECT_THAT(imported_from(raw).failure, HasSubstr("--start with the first day"));
+  LogOptions options;
+  options.start = kEvening;
+  const auto days = imported_from(raw, options);
+  ASSERT_EQ(days.readings.size(), 2U) << days.failure;
+  EXPECT_EQ(days.readings[0].time.utc, kEvening + 2h - 500ms);
+  EXPECT_EQ(days.readings[1].time.utc, kEvening + 2h + 250ms);
+}
+
 TEST(LogImport, OfHurtLinesEndsWithPlausibleReadingsInOrder) {
   const std::string sound =
       "2023-06-25 22:00:00, $WIMWV,10,R,5.0,M,A*24\n$GPRMC,220000,A,,,,,,,250623,,\n\x02Q,270,002.74,M,00,\x03"
