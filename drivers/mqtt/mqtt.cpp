@@ -166,7 +166,7 @@ const Fields<Keys> kMqttFields = {
 
 /// A direction or gust that a message has: without a value if the publisher reports that it has none.
 struct SentValue {
-  std::optional<double> value;
+  std::optional<double> value = {};
   bool is_unreadable = false;
 };
 

@@ -255,8 +255,9 @@ std::optional<LogMessage> KeyReader::message_of(const KeyedLine& line) {
 std::optional<LogMessage> KeyReader::take(std::string_view text) {
   has_absorbed_ = false;
   auto line = split_keyed_line(text);
+  has_keys_ = line && line->keys.size() > 1;
   if (!line) return std::nullopt;
-  if (line->keys.size() > 1) return message_of(*line);
+  if (has_keys_) return message_of(*line);
   std::optional<LogMessage> ended;
   if (std::ranges::find(block_.keys, line->keys[0]) != block_.keys.end()) ended = finish();
   if (block_.keys.empty()) block_prefix_ = line->prefix;

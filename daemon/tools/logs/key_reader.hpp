@@ -35,6 +35,8 @@ class KeyReader {
   std::optional<LogMessage> take(std::string_view line);
   /// Returns true if the last line that was taken is a part of a message that goes on.
   bool has_absorbed() const { return has_absorbed_; }
+  /// Returns true if the last line that was taken has several keys, of a wind or not.
+  bool has_keys() const { return has_keys_; }
   /// The last one of one key a line.
   std::optional<LogMessage> finish();
 
@@ -58,6 +60,7 @@ class KeyReader {
   KeyedLine block_;          ///< of one key a line
   std::string block_prefix_;
   bool has_absorbed_ = false;
+  bool has_keys_ = false;
 };
 
 }  // namespace yuragi::daemon::tools::logs

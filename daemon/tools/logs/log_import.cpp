@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <istream>
 #include <map>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -23,9 +24,16 @@ std::string_view text_of(csv::Lines& lines) {
   return {line.data(), line.size()};
 }
 
+/// The winds of one source.
+struct LogSource {
+  std::string name = {};
+  std::size_t winds = 0;
+  std::size_t with_time = 0;
+};
+
 /// The content of a log, before one of its sources is chosen.
 struct LogContents {
-  std::map<std::string, std::size_t, std::less<>> sources;  ///< readings with a speed, by source
+  std::vector<LogSource> sources;  ///< in the order in which they come first
   std::size_t leading_times = 0;
   std::size_t own_times = 0;
   std::size_t times_of_day = 0;
@@ -33,6 +41,11 @@ struct LogContents {
   std::size_t lines = 0;
   std::map<decode::Refusal, std::size_t> refusals;  ///< of messages without a wind
   bool has_clock = false;
+
+  LogSource* find(std::string_view name) {
+    const auto found = std::ranges::find(sources, name, &LogSource::name);
+    return found == sources.end() ? nullptr : &*found;
+  }
 };
 
 LogContents contents_of(std::istream& in, const LogOptions& options) {
@@ -45,12 +58,18 @@ LogContents contents_of(std::istream& in, const LogOptions& options) {
     if (!message->wind) ++contents.refusals[message->wind.error()];
     if (!message->wind || !message->wind->speed_m_s) return;
     ++contents.messages;
-    if (leading_time(message->prefix, options.table.time_format)) ++contents.leading_times;
+    const bool has_leading_time = leading_time(message->prefix, options.table.time_format).has_value();
+    if (has_leading_time) ++contents.leading_times;
     if (message->time) ++contents.own_times;
     if (message->time_of_day) ++contents.times_of_day;
+    LogSource* source = contents.find(message->source);
     constexpr std::size_t kMaxSources = 100;
-    const bool is_new = contents.sources.size() < kMaxSources;
-    if (is_new || contents.sources.contains(message->source)) ++contents.sources[message->source];
+    if (source == nullptr) {
+      if (contents.sources.size() == kMaxSources) return;
+      source = &contents.sources.emplace_back(LogSource{.name = message->source});
+    }
+    ++source->winds;
+    if (has_leading_time || message->time || message->time_of_day) ++source->with_time;
   };
   while (lines.next()) {
     ++contents.lines;
@@ -69,22 +88,21 @@ int rank_of(std::string_view source) {
   return static_cast<int>(found - kOrder.begin());
 }
 
-/// The best of those that the log has half as often as any, or more.
-std::string chosen_source(const LogContents& contents, const LogOptions& options) {
-  const auto is_wanted = [&](std::string_view source) {
-    return options.sentence.empty() || source.starts_with(options.sentence);
+/// The best of those that the log has half as often as any, or more; of those as good the first, but one without times
+/// after one with them. Nullptr: none is wanted.
+const LogSource* chosen_source(const LogContents& contents, const LogOptions& options) {
+  const auto is_wanted = [&](const LogSource& source) {
+    return options.sentence.empty() || source.name.starts_with(options.sentence);
   };
   std::size_t most = 0;
-  for (const auto& [source, count] : contents.sources) {
-    if (is_wanted(source)) most = std::max(most, count);
+  for (const LogSource& source : contents.sources) {
+    if (is_wanted(source)) most = std::max(most, source.winds);
   }
-  std::string chosen;
-  for (const auto& [source, count] : contents.sources) {
-    if (!is_wanted(source) || 2 * count < most) continue;
-    const int rank = rank_of(source);
-    const bool is_better =
-        chosen.empty() || rank < rank_of(chosen) || (rank == rank_of(chosen) && count > contents.sources.at(chosen));
-    if (is_better) chosen = source;
+  const LogSource* chosen = nullptr;
+  for (const LogSource& source : contents.sources) {
+    if (!is_wanted(source) || 2 * source.winds < most) continue;
+    const auto key = [](const LogSource& each) { return std::tuple(-rank_of(each.name), each.with_time, each.winds); };
+    if (chosen == nullptr || key(source) > key(*chosen)) chosen = &source;
   }
   return chosen;
 }
@@ -237,7 +255,7 @@ bool looks_like_log(const std::vector<std::string>& lines, const csv::ImportOpti
   for (const std::string& line : lines) {
     if (line.empty() || line.starts_with('#')) continue;
     const auto message = finder.find(line);
-    if (finder.has_absorbed() && !message) continue;
+    if (!message && (finder.has_absorbed() || finder.has_keys())) continue;
     ++(message ? messages : others);
   }
   if (finder.finish()) ++messages;
@@ -253,12 +271,12 @@ Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::stri
       refused += fmt::format("{}{} {}", refused.empty() ? "; messages without a wind: " : ", ", count, name_of(why));
     return Failure{fmt::format("{}: no line has a wind{}; {} are understood", name, refused, kMessagesThatAreFound)};
   }
-  const std::string source = chosen_source(contents, options);
-  if (source.empty()) return Failure{name + ": no line has the sentence " + options.sentence + " with a speed"};
+  const LogSource* const source = chosen_source(contents, options);
+  if (source == nullptr) return Failure{name + ": no line has the sentence " + options.sentence + " with a speed"};
   const auto time_source = time_source_of(contents, options);
   if (!time_source) {
-    const std::string found = fmt::format("{}: {} from {} in {}", name, count_text(contents.sources.at(source), "wind"),
-                                          source, count_text(contents.lines, "line"));
+    const std::string found = fmt::format("{}: {} from {} in {}", name, count_text(source->winds, "wind"), source->name,
+                                          count_text(contents.lines, "line"));
     if (2 * contents.times_of_day > contents.messages)
       return Failure{found + ", with the time of the day alone; add --start with the first day (--start 2023-06-25)"};
     return Failure{found +
@@ -266,13 +284,14 @@ Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::stri
                    "2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, if a time stands "
                    "before them)"};
   }
-  auto report = LogImport(name, options, sinks, source, *time_source).run(input.second_pass());
+  auto report = LogImport(name, options, sinks, source->name, *time_source).run(input.second_pass());
   if (!report) return report;
-  std::vector<std::string> columns = {fmt::format(
-      "{}: {} in {}", source, count_text(contents.sources.at(source), "wind"), count_text(contents.lines, "line"))};
+  std::vector<std::string> columns = {
+      fmt::format("{}: {} in {}", source->name, count_text(source->winds, "wind"), count_text(contents.lines, "line"))};
   columns.insert(columns.end(), report->columns.begin(), report->columns.end());
-  for (const auto& [each, count] : contents.sources) {
-    if (each != source) columns.push_back(fmt::format("not taken: {} ({} of them; --sentence)", each, count));
+  for (const LogSource& each : contents.sources) {
+    if (&each != source)
+      columns.push_back(fmt::format("not taken: {} ({} of them; --sentence)", each.name, each.winds));
   }
   const std::string zone = fmt::format(", in {} if it names no zone", options.table.zone.value_or(csv::Zone()).name());
   switch (*time_source) {

@@ -1,5 +1,6 @@
 #include "daemon/tools/logs/log_time.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 
@@ -98,7 +99,13 @@ std::optional<csv::Time> leading_time(std::string_view prefix, csv::TimeFormat f
     const std::string_view first = csv::without_blanks(prefix.substr(0, prefix.find(separator)));
     if (const auto time = time_in(first, format)) return time;
   }
-  return std::nullopt;
+  // Or words: the first two are date and time of the day, or the first one is both.
+  const auto first_end = std::min(prefix.find(' '), prefix.size());
+  const auto second_end = std::min(prefix.find(' ', std::min(first_end + 1, prefix.size())), prefix.size());
+  if (const auto time = time_in(prefix.substr(0, second_end), format)) return time;
+  const std::string_view first = prefix.substr(0, first_end);
+  if (first.find(':') == std::string_view::npos && !csv::guess_count_format(first)) return std::nullopt;
+  return time_in(first, format);
 }
 
 }  // namespace yuragi::daemon::tools::logs

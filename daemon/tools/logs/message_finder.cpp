@@ -70,10 +70,9 @@ std::optional<LogMessage> gill_message(std::string_view line) {
     LogMessage message;
     message.prefix = line.substr(0, i);
     message.wind = decode::text::decode_gill(options, text);
-    if (!message.wind && line[i] != kStx && message.wind.error() != Refusal::kInvalid &&
-        message.wind.error() != Refusal::kBadChecksum) {
-      continue;
-    }
+    // Without its first byte a letter and a comma are no message: tables have them, too.
+    const bool has_end = text.find('\x03') != std::string_view::npos;
+    if (!message.wind && line[i] != kStx && !has_end) continue;
     const char node = line[i] == kStx ? line[i + 1] : line[i];
     message.source = std::string("Gill of ") + node;
     return message;

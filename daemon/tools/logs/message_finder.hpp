@@ -32,6 +32,8 @@ class MessageFinder {
   std::optional<LogMessage> finish();
   /// Returns true if the last line is a part of a message that goes on.
   bool has_absorbed() const { return keys_.has_absorbed(); }
+  /// Returns true if the last line in which nothing was found has several keys.
+  bool has_keys() const { return keys_.has_keys(); }
 
   /// How the messages of a source were understood, a line each; can be empty.
   std::vector<std::string> describe(std::string_view source) const { return keys_.describe(source); }

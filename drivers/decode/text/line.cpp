@@ -189,6 +189,8 @@ Result<LineTexts, Refusal> texts_of_keys(const LineOptions& options, std::string
 
 /// The three values, in m/s and degrees, of the quantities that a line names.
 struct LineValues {
+  LineValues() = default;  // no aggregate: a Refusal must not become a value of it
+
   std::optional<LineValue> speed_m_s = {};
   std::optional<LineValue> direction_deg = {};
   std::optional<LineValue> gust_m_s = {};
@@ -256,6 +258,11 @@ void add_direction(const LineValue& direction_deg, LineWind& line) {
   if (line.direction_refusal) line.wind.status = DecodedStatus::kUncertain;
 }
 
+/// Returns true if the line has a byte that only damage puts there.
+bool has_control_byte(std::string_view line) {
+  return std::ranges::any_of(line, [](char c) { return (c >= '\0' && c < ' ' && c != '\t') || c == '\x7f'; });
+}
+
 bool is_empty(const DecodedWind& wind) {
   return !wind.speed_m_s && !wind.direction_deg && !wind.gust_m_s;
 }
@@ -266,6 +273,7 @@ Result<LineWind, Refusal> read_line(const LineOptions& options, std::string_view
   line = trimmed(line);
   if (line.empty()) return Refusal::kTooShort;
   if (line.front() == '#') return Refusal::kNotMine;
+  if (has_control_byte(line)) return Refusal::kMalformed;
 
   const auto values = values_of_line(options, line);
   if (!values) return values.error();

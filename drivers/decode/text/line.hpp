@@ -63,9 +63,9 @@ struct LineWind {
 
 /// The quantities in one line, or why they cannot be read: kTooShort (an empty line), kNotMine (a comment: it begins
 /// with '#'; or it has none of the keys), kMalformed (speed or gust is not a number, a key comes twice, the line ends
-/// before all of the columns, or invalid JSON), kImplausible. An unknown unit is kMalformed if it stands at the number
-/// itself. Lines that end before a column leave it empty. A direction never discards the others. Thread-safe: yes.
-/// Realtime-safe: yes, except JSON, which allocates.
+/// before all of the columns, a control character, or invalid JSON), kImplausible. An unknown unit is kMalformed if it
+/// stands at the number itself. Lines that end before a column leave it empty. A direction never discards the others.
+/// Thread-safe: yes. Realtime-safe: yes, except JSON, which allocates.
 Result<LineWind, Refusal> read_line(const LineOptions& options, std::string_view line) noexcept;
 
 /// The wind in one line, by itself: as read_line(); without any value kInvalid, or why the direction cannot be read.

@@ -135,6 +135,11 @@ TEST(NumberLine, WithADirectionThatCannotBeReadKeepsItsSpeed) {
     EXPECT_TRUE(reads(decoded, 4.0, {})) << line;
     EXPECT_EQ(decoded->status, DecodedStatus::kUncertain) << line;
   }
+  EXPECT_TRUE(is_refused(text::decode_line(options,
+                                           "4.2,2\x17"
+                                           "0"),
+                         Refusal::kMalformed))
+      << "the line is damaged";
   EXPECT_TRUE(is_refused(text::decode_line(options, "direction=??"), Refusal::kMalformed));
   EXPECT_TRUE(is_refused(text::decode_line(options, "direction=720"), Refusal::kImplausible));
 }
