@@ -128,8 +128,8 @@ tools::csv::ImportOptions csv_options(const ImportOptions& options) {
   return csv;
 }
 
-tools::logs::LogOptions log_options(const ImportOptions& options, const tools::csv::ImportOptions& csv) {
-  tools::logs::LogOptions log;
+tools::logs::Options log_options(const ImportOptions& options, const tools::csv::ImportOptions& csv) {
+  tools::logs::Options log;
   log.table = csv;
   log.sentence = options.sentence;
   if (options.interval_s > 0.0) log.interval = from_seconds(options.interval_s);
@@ -144,7 +144,7 @@ tools::logs::LogOptions log_options(const ImportOptions& options, const tools::c
 Result<tools::csv::ImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
                                                      const tools::csv::Sinks& sinks) {
   const tools::csv::ImportOptions csv = csv_options(options);
-  const tools::logs::LogOptions log = log_options(options, csv);
+  const tools::logs::Options log = log_options(options, csv);
   tools::csv::Input input(in);
   const auto lines = tools::csv::first_lines(input, options.input);
   if (!lines) return lines.error();

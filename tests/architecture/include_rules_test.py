@@ -46,7 +46,7 @@ C_LIBRARIES = "curl modbus hidapi libusb portaudio sqlite3.h mosquitto.h lo umoc
 
 # The operating system's own headers.
 POSIX = set(
-    "arpa dlfcn.h fcntl.h grp.h ifaddrs.h linux net netdb.h netinet poll.h pthread.h pwd.h resolv.h sched.h signal.h spawn.h sys sysexits.h"
+    "arpa dlfcn.h fcntl.h grp.h iconv.h ifaddrs.h linux net netdb.h netinet poll.h pthread.h pwd.h resolv.h sched.h signal.h spawn.h sys sysexits.h"
     " termios.h time.h unistd.h malloc.h".split()
 )
 

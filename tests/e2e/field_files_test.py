@@ -7,6 +7,7 @@ usage: field_files_test.py YURAGI [FOLDER]
 import csv
 import io
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -19,12 +20,13 @@ MPH = 0.44704
 # case, file, options, readings, rows left out, first: UTC, m/s, degrees
 CASES = [
     ("canboat-plain-lines", "ws320.raw", (), 23, 0, ("2018-02-14T15:55:07.944", 0.68, 235.0)),
-    ("canboat-plain-lines", "bandg_tritonedge.raw", (), 33, 0, None),
+    # Of 33 winds, a third each from the bow, over ground and through the water: one frame is taken, the others named.
+    ("canboat-plain-lines", "bandg_tritonedge.raw", (), 11, 0, None),
     ("ecowitt-german-csv", "upload-data-04-03-21-14-03-21-145-records.CSV", (), 145, 0, ("2021-03-04T19:57:00", 0.0, 302.0)),
     ("mwd-without-knots", "mwd_noknots.nmea", ("--start", "2026-01-01T00:00:00Z", "--interval", "1"), 7, 0,
      ("2026-01-01T00:00:00", 4.5, 322.8)),
     ("n2k-bytes-imported-as-wind", "dirona_head.raw", (), None, 0, (None, 4.79, 0.59)),
-    ("n2k-log-import", "merrimac-ydwg-2020.raw", ("--start", "2020-06-01T00:00:00Z"), 56, 0, ("2020-06-01T00:29:58.618", None, None)),
+    ("n2k-log-import", "merrimac-ydwg-2020.raw", ("--start", "2020-06-01"), 38, 0, ("2020-06-01T00:29:58.659", 4.09, 343.4)),  # of 56 in two frames
     ("nrel-midc-raw-hhmm", "midc_raw_head.txt", (), 200, 0, ("2018-10-18T07:00:00", 2.947, 328.6)),
     ("nrg-logger-preamble", "20240111_1339_000304_002995_onesecond.dat", (), 115, 0, ("2024-01-11T13:39:30", 1.822, 336.6391)),
     ("nrg-logger-preamble", "meas.txt", (), 20, 0, ("2022-03-17T11:10:00", 0.139, 345.0)),
@@ -63,11 +65,11 @@ class FieldFiles(unittest.TestCase):
             recording = pathlib.Path(folder, "a.windlog")
             for case, name, options, taken, left_out, first in CASES:
                 with self.subTest(f"{case} {name}"):
-                    done = yuragi("import", FOLDER / case / name, "-o", recording, "--force", *options)
+                    recording.unlink(missing_ok=True)
+                    done = yuragi("import", FOLDER / case / name, "-o", recording, *options)
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                     rows = list(csv.DictReader(io.StringIO(yuragi("export", recording, "-o", "-").stdout)))
-                    lost = sum(int(line.split(":")[1].split()[0]) for line in done.stderr.splitlines() if line.startswith("left out:") or 0) \
-                        if False else int(done.stdout.rsplit(",", 1)[1].split()[0])
+                    lost = int(re.search(r" rows?, (\d+) left out", done.stdout).group(1))
                     row = rows[0]
                     print(f"{case:32} {name[:28]:28} {len(rows):6} {lost:8}  {done.returncode:4}  "
                           f"{row['utc'][:23]} {float(row['speed_m_s']):.3f} {row['direction_deg']}")

@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace yuragi;
   if (size == 0) return 0;
-  daemon::tools::logs::LogOptions options;
+  daemon::tools::logs::Options options;
   if ((data[0] & 1) != 0) {
     options.start = UtcTime(std::chrono::seconds(1'687'730'400));
     options.interval = std::chrono::milliseconds(250);

@@ -15,6 +15,7 @@
 #include "drivers/decode/json_value.hpp"
 #include "drivers/decode/network/station_push.hpp"
 #include "engine/base/compass.hpp"
+#include "engine/base/json_text.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::daemon::tools::logs {
@@ -44,7 +45,7 @@ void add_members(KeyedLine& line, const nlohmann::json& object, const std::strin
   for (const auto& [name, value] : object.items()) {
     const std::string key = path.empty() ? name : path + "." + name;
     if (value.is_object() && depth < kMaxDepth) add_members(line, value, key, depth + 1);
-    if (value.is_number()) add(line, key, value.dump());
+    if (value.is_number()) add(line, key, json_text(value));
     if (value.is_string()) add(line, key, value.get<std::string>());
     if (value.is_null()) add(line, key, {});
   }
@@ -239,10 +240,10 @@ const KeyReader::Form& KeyReader::form_of(const KeyedLine& line) {
   return forms_.back();
 }
 
-std::optional<LogMessage> KeyReader::message_of(const KeyedLine& line) {
+std::optional<Message> KeyReader::message_of(const KeyedLine& line) {
   const Form& form = form_of(line);
   if (!form.columns) return std::nullopt;
-  LogMessage message;
+  Message message;
   message.prefix = line.prefix;
   message.source = form.source + station_of(line);
   if (!form.failure.empty()) return message;
@@ -252,13 +253,13 @@ std::optional<LogMessage> KeyReader::message_of(const KeyedLine& line) {
   return message;
 }
 
-std::optional<LogMessage> KeyReader::take(std::string_view text) {
+std::optional<Message> KeyReader::take(std::string_view text) {
   has_absorbed_ = false;
   auto line = split_keyed_line(text);
   has_keys_ = line && line->keys.size() > 1;
   if (!line) return std::nullopt;
   if (has_keys_) return message_of(*line);
-  std::optional<LogMessage> ended;
+  std::optional<Message> ended;
   if (std::ranges::find(block_.keys, line->keys[0]) != block_.keys.end()) ended = finish();
   if (block_.keys.empty()) block_prefix_ = line->prefix;
   has_absorbed_ = true;
@@ -266,7 +267,7 @@ std::optional<LogMessage> KeyReader::take(std::string_view text) {
   return ended;
 }
 
-std::optional<LogMessage> KeyReader::finish() {
+std::optional<Message> KeyReader::finish() {
   if (block_.keys.empty()) return std::nullopt;
   block_.prefix = block_prefix_;
   auto message = message_of(block_);

@@ -32,13 +32,13 @@ class KeyReader {
   explicit KeyReader(const csv::ImportOptions& options) : options_(options) {}
 
   /// The message in a line, or, of one key a line, the one that it ends; nullopt if there is none.
-  std::optional<LogMessage> take(std::string_view line);
+  std::optional<Message> take(std::string_view line);
   /// Returns true if the last line that was taken is a part of a message that goes on.
   bool has_absorbed() const { return has_absorbed_; }
   /// Returns true if the last line that was taken has several keys, of a wind or not.
   bool has_keys() const { return has_keys_; }
   /// The last one of one key a line.
-  std::optional<LogMessage> finish();
+  std::optional<Message> finish();
 
   /// How the keys of a source were understood, a line each; empty if it is not one of keys.
   std::vector<std::string> describe(std::string_view source) const;
@@ -53,7 +53,7 @@ class KeyReader {
   };
 
   const Form& form_of(const KeyedLine& line);
-  std::optional<LogMessage> message_of(const KeyedLine& line);
+  std::optional<Message> message_of(const KeyedLine& line);
 
   csv::ImportOptions options_;
   std::vector<Form> forms_;  ///< the newest last; bounded

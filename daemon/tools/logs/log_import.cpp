@@ -25,15 +25,15 @@ std::string_view text_of(csv::Lines& lines) {
 }
 
 /// The winds of one source.
-struct LogSource {
+struct Source {
   std::string name = {};
   std::size_t winds = 0;
   std::size_t with_time = 0;
 };
 
 /// The content of a log, before one of its sources is chosen.
-struct LogContents {
-  std::vector<LogSource> sources;  ///< in the order in which they come first
+struct Contents {
+  std::vector<Source> sources;  ///< in the order in which they come first
   std::size_t leading_times = 0;
   std::size_t own_times = 0;
   std::size_t times_of_day = 0;
@@ -42,18 +42,18 @@ struct LogContents {
   std::map<decode::Refusal, std::size_t> refusals;  ///< of messages without a wind
   bool has_clock = false;
 
-  LogSource* find(std::string_view name) {
-    const auto found = std::ranges::find(sources, name, &LogSource::name);
+  Source* find(std::string_view name) {
+    const auto found = std::ranges::find(sources, name, &Source::name);
     return found == sources.end() ? nullptr : &*found;
   }
 };
 
-LogContents contents_of(std::istream& in, const LogOptions& options) {
-  LogContents contents;
+Contents contents_of(std::istream& in, const Options& options) {
+  Contents contents;
   csv::Lines lines(in, 0);
   NmeaClock clock;
   MessageFinder finder(options.table);
-  const auto count = [&](const std::optional<LogMessage>& message) {
+  const auto count = [&](const std::optional<Message>& message) {
     if (!message) return;
     if (!message->wind) ++contents.refusals[message->wind.error()];
     if (!message->wind || !message->wind->speed_m_s) return;
@@ -62,11 +62,11 @@ LogContents contents_of(std::istream& in, const LogOptions& options) {
     if (has_leading_time) ++contents.leading_times;
     if (message->time) ++contents.own_times;
     if (message->time_of_day) ++contents.times_of_day;
-    LogSource* source = contents.find(message->source);
+    Source* source = contents.find(message->source);
     constexpr std::size_t kMaxSources = 100;
     if (source == nullptr) {
       if (contents.sources.size() == kMaxSources) return;
-      source = &contents.sources.emplace_back(LogSource{.name = message->source});
+      source = &contents.sources.emplace_back(Source{.name = message->source});
     }
     ++source->winds;
     if (has_leading_time || message->time || message->time_of_day) ++source->with_time;
@@ -82,26 +82,28 @@ LogContents contents_of(std::istream& in, const LogOptions& options) {
 
 /// Less is better: angles from north, from the device's own mark, with its motion taken out.
 int rank_of(std::string_view source) {
-  constexpr std::array<std::string_view, 8> kOrder = {"MWD", "MDA", "MWV R", "VWR", "MWV T", "VWT", "XDR", ""};
+  constexpr std::array<std::string_view, 13> kOrder = {"MWD",      "north", "MDA",      "MWV R", "relative",
+                                                       "apparent", "VWR",   "magnetic", "MWV T", "true",
+                                                       "ground",   "VWT",   "XDR"};
   const auto* const found =
-      std::ranges::find_if(kOrder, [&](std::string_view name) { return source.starts_with(name); });
+      std::ranges::find_if(kOrder, [&](std::string_view name) { return source.find(name) != std::string_view::npos; });
   return static_cast<int>(found - kOrder.begin());
 }
 
 /// The best of those that the log has half as often as any, or more; of those as good the first, but one without times
 /// after one with them. Nullptr: none is wanted.
-const LogSource* chosen_source(const LogContents& contents, const LogOptions& options) {
-  const auto is_wanted = [&](const LogSource& source) {
+const Source* chosen_source(const Contents& contents, const Options& options) {
+  const auto is_wanted = [&](const Source& source) {
     return options.sentence.empty() || source.name.starts_with(options.sentence);
   };
   std::size_t most = 0;
-  for (const LogSource& source : contents.sources) {
+  for (const Source& source : contents.sources) {
     if (is_wanted(source)) most = std::max(most, source.winds);
   }
-  const LogSource* chosen = nullptr;
-  for (const LogSource& source : contents.sources) {
+  const Source* chosen = nullptr;
+  for (const Source& source : contents.sources) {
     if (!is_wanted(source) || 2 * source.winds < most) continue;
-    const auto key = [](const LogSource& each) { return std::tuple(-rank_of(each.name), each.with_time, each.winds); };
+    const auto key = [](const Source& each) { return std::tuple(-rank_of(each.name), each.with_time, each.winds); };
     if (chosen == nullptr || key(source) > key(*chosen)) chosen = &source;
   }
   return chosen;
@@ -110,7 +112,7 @@ const LogSource* chosen_source(const LogContents& contents, const LogOptions& op
 /// Where the times of readings come from.
 enum class TimeSource : std::uint8_t { kStart, kLeading, kOwn, kClock, kTimeOfDay };
 
-std::optional<TimeSource> time_source_of(const LogContents& contents, const LogOptions& options) {
+std::optional<TimeSource> time_source_of(const Contents& contents, const Options& options) {
   if (options.start && options.interval) return TimeSource::kStart;
   if (2 * contents.leading_times > contents.messages) return TimeSource::kLeading;
   if (2 * contents.own_times > contents.messages) return TimeSource::kOwn;
@@ -119,10 +121,10 @@ std::optional<TimeSource> time_source_of(const LogContents& contents, const LogO
   return std::nullopt;
 }
 
-class LogImport {
+class Import {
  public:
-  LogImport(const std::string& name, const LogOptions& options, const csv::Sinks& sinks, std::string source,
-            TimeSource time_source)
+  Import(const std::string& name, const Options& options, const csv::Sinks& sinks, std::string source,
+         TimeSource time_source)
       : name_(name),
         options_(options),
         sinks_(sinks),
@@ -153,12 +155,13 @@ class LogImport {
 
  private:
   /// False if it is refused, and that ends the import.
-  bool take_message(const std::optional<LogMessage>& message, std::size_t line) {
+  bool take_message(const std::optional<Message>& message, std::size_t line) {
     if (!message || (message->source != source_ && !message->quantities)) {
       ++passed_over_;
       return true;
     }
-    if (message->source != source_ || (!message->wind && message->quantities)) {
+    if (message->source != source_ ||
+        (!message->wind && message->wind.error() == decode::Refusal::kNotMine && message->quantities)) {
       take_quantities(*message);
       return true;
     }
@@ -169,7 +172,7 @@ class LogImport {
     return !options_.table.strict;
   }
 
-  Result<UtcTime, csv::RowRefusal> time_of(const LogMessage& message) {
+  Result<UtcTime, csv::RowRefusal> time_of(const Message& message) {
     if (time_source_ == TimeSource::kStart)
       return *options_.start + *options_.interval * static_cast<std::int64_t>(report_.rows - 1);
     if (time_source_ == TimeSource::kClock) {
@@ -197,7 +200,7 @@ class LogImport {
     return time;
   }
 
-  Result<void, csv::RowRefusal> take(const LogMessage& message) {
+  Result<void, csv::RowRefusal> take(const Message& message) {
     if (!message.wind) return csv::RowRefusal{std::string(name_of(message.wind.error()))};
     if (!message.wind->speed_m_s) return csv::RowRefusal{"no speed"};
     const auto utc = time_of(message);
@@ -221,7 +224,7 @@ class LogImport {
   }
 
   /// At the time of the last reading.
-  void take_quantities(const LogMessage& message) {
+  void take_quantities(const Message& message) {
     if (!message.quantities || report_.taken == 0) return;
     wind::StationQuantities quantities = *message.quantities;
     quantities.time = last_time_;
@@ -232,7 +235,7 @@ class LogImport {
   }
 
   const std::string& name_;
-  const LogOptions& options_;
+  const Options& options_;
   const csv::Sinks& sinks_;
   std::string source_;
   TimeSource time_source_;
@@ -262,16 +265,16 @@ bool looks_like_log(const std::vector<std::string>& lines, const csv::ImportOpti
   return messages > others;
 }
 
-Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::string& name, const LogOptions& options,
+Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::string& name, const Options& options,
                                               const csv::Sinks& sinks) {
-  const LogContents contents = contents_of(input.first_pass(), options);
+  const Contents contents = contents_of(input.first_pass(), options);
   if (contents.messages == 0) {
     std::string refused;
     for (const auto& [why, count] : contents.refusals)
       refused += fmt::format("{}{} {}", refused.empty() ? "; messages without a wind: " : ", ", count, name_of(why));
     return Failure{fmt::format("{}: no line has a wind{}; {} are understood", name, refused, kMessagesThatAreFound)};
   }
-  const LogSource* const source = chosen_source(contents, options);
+  const Source* const source = chosen_source(contents, options);
   if (source == nullptr) return Failure{name + ": no line has the sentence " + options.sentence + " with a speed"};
   const auto time_source = time_source_of(contents, options);
   if (!time_source) {
@@ -284,12 +287,12 @@ Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::stri
                    "2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, if a time stands "
                    "before them)"};
   }
-  auto report = LogImport(name, options, sinks, source->name, *time_source).run(input.second_pass());
+  auto report = Import(name, options, sinks, source->name, *time_source).run(input.second_pass());
   if (!report) return report;
   std::vector<std::string> columns = {
       fmt::format("{}: {} in {}", source->name, count_text(source->winds, "wind"), count_text(contents.lines, "line"))};
   columns.insert(columns.end(), report->columns.begin(), report->columns.end());
-  for (const LogSource& each : contents.sources) {
+  for (const Source& each : contents.sources) {
     if (&each != source)
       columns.push_back(fmt::format("not taken: {} ({} of them; --sentence)", each.name, each.winds));
   }

@@ -11,7 +11,7 @@
 
 namespace yuragi::daemon::tools::logs {
 
-struct LogOptions {
+struct Options {
   csv::ImportOptions table;             ///< of keys and their units; of times: zone and format; sensor and strictness
   std::optional<UtcTime> start;         ///< of the first reading, if the log has no times
   std::optional<Nanoseconds> interval;  ///< from one reading to the next, if the log has no times
@@ -28,7 +28,7 @@ bool looks_like_log(const std::vector<std::string>& lines, const csv::ImportOpti
 ///
 /// Fails, with the option that helps, if no line has a wind or no time is found. Otherwise as
 /// import_csv().
-Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::string& name, const LogOptions& options,
+Result<csv::ImportReport, Failure> import_log(csv::Input& input, const std::string& name, const Options& options,
                                               const csv::Sinks& sinks);
 
 }  // namespace yuragi::daemon::tools::logs

@@ -13,7 +13,7 @@
 namespace yuragi::daemon::tools::logs {
 
 /// An anemometer's message in a log.
-struct LogMessage {
+struct Message {
   std::string prefix = {};  ///< what the logger wrote before it
   /// Which of a log's winds it is: "MWV R of WI", "Gill of Q", "NMEA 2000 apparent", "key wind_avg_m_s"; empty if the
   /// message is refused.

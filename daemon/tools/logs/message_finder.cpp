@@ -37,9 +37,9 @@ std::string nmea_source(std::string_view sentence) {
   return name + " of " + std::string(word.substr(0, word.size() - std::min<std::size_t>(3, word.size())));
 }
 
-LogMessage dollar_message(std::string_view line, std::size_t dollar) {
+Message dollar_message(std::string_view line, std::size_t dollar) {
   const std::string_view text = line.substr(dollar);
-  LogMessage message;
+  Message message;
   message.prefix = line.substr(0, dollar);
   if (text.starts_with("$ ")) {
     message.wind = decode::text::decode_umb({}, text);
@@ -57,7 +57,7 @@ LogMessage dollar_message(std::string_view line, std::size_t dollar) {
 }
 
 /// Gill's messages begin with STX, or with the letter of a node and a comma.
-std::optional<LogMessage> gill_message(std::string_view line) {
+std::optional<Message> gill_message(std::string_view line) {
   constexpr char kStx = '\x02';
   constexpr std::string_view kBefore = " \t,;|>])";
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
@@ -67,7 +67,7 @@ std::optional<LogMessage> gill_message(std::string_view line) {
     const std::string_view text = line.substr(i);
     const decode::text::GillOptions options{
         .checksum = WhenMissing::kAccept, .status = WhenMissing::kAccept, .node = std::nullopt};
-    LogMessage message;
+    Message message;
     message.prefix = line.substr(0, i);
     message.wind = decode::text::decode_gill(options, text);
     // Without its first byte a letter and a comma are no message: tables have them, too.
@@ -81,13 +81,13 @@ std::optional<LogMessage> gill_message(std::string_view line) {
 }
 
 /// Vaisala's begin with an address, R or r, and a digit: "0R1,Dn=236D,...".
-std::optional<LogMessage> wxt_message(std::string_view line) {
+std::optional<Message> wxt_message(std::string_view line) {
   const decode::text::WxtOptions options{.checksum = WhenMissing::kAccept};
   for (std::size_t comma = line.find(','); comma != std::string_view::npos; comma = line.find(',', comma + 1)) {
     if (comma < 3) continue;
     const std::string_view text = line.substr(comma - 3);
     if (!decode::text::looks_like_wxt(text)) continue;
-    LogMessage message;
+    Message message;
     message.prefix = line.substr(0, comma - 3);
     message.source = std::string("WXT ") + text[0];
     message.wind = decode::text::decode_wxt(options, text);
@@ -108,9 +108,9 @@ bool is_of_tempest(std::string_view text) {
 
 }  // namespace
 
-std::optional<LogMessage> MessageFinder::tempest_message(std::string_view text) {
+std::optional<Message> MessageFinder::tempest_message(std::string_view text) {
   const auto decoded = decode::network::decode_tempest(text);
-  LogMessage message;
+  Message message;
   if (!decoded) {
     message.wind = decoded.error();
     return message;
@@ -125,10 +125,10 @@ std::optional<LogMessage> MessageFinder::tempest_message(std::string_view text) 
   return message;
 }
 
-std::optional<LogMessage> MessageFinder::json_message(std::string_view text) {
+std::optional<Message> MessageFinder::json_message(std::string_view text) {
   if (is_of_tempest(text)) return tempest_message(text);
   if (text.find("\"conditions\"") != std::string_view::npos) {
-    LogMessage message;
+    Message message;
     const auto conditions = decode::davis::decode_live_conditions(text, 0);
     if (!conditions) {
       message.wind = conditions.error();
@@ -146,7 +146,7 @@ std::optional<LogMessage> MessageFinder::json_message(std::string_view text) {
   }
   if (text.find("\"updates\"") != std::string_view::npos) {
     const auto delta = decode::marine::decode_signalk(text);
-    LogMessage message;
+    Message message;
     if (!delta) {
       message.wind = delta.error();
       return message;
@@ -165,12 +165,12 @@ std::optional<LogMessage> MessageFinder::json_message(std::string_view text) {
 }
 
 /// A line of NMEA 2000, whatever it is about; a wind's source has its frame.
-std::optional<LogMessage> MessageFinder::bus_message(std::string_view line) {
+std::optional<Message> MessageFinder::bus_message(std::string_view line) {
   const auto format = decode::marine::bus_line_format_of(line);
   if (!format) return std::nullopt;
   if (format == decode::marine::BusLineFormat::kCanboat && line.find("\"pgn\"") == std::string_view::npos)
     return std::nullopt;
-  LogMessage message;
+  Message message;
   const auto decoded = bus_.decode(line);
   if (!decoded) {
     // Other lines can begin in the same way.
@@ -192,7 +192,7 @@ std::optional<LogMessage> MessageFinder::bus_message(std::string_view line) {
   return message;
 }
 
-std::optional<LogMessage> MessageFinder::find(std::string_view line) {
+std::optional<Message> MessageFinder::find(std::string_view line) {
   if (auto message = bus_message(line)) return message;
   if (const auto brace = line.find('{'); brace != std::string_view::npos) {
     if (auto message = json_message(line.substr(brace))) {
@@ -215,7 +215,7 @@ std::optional<LogMessage> MessageFinder::find(std::string_view line) {
   return keys_.take(line);
 }
 
-std::optional<LogMessage> MessageFinder::finish() {
+std::optional<Message> MessageFinder::finish() {
   return keys_.finish();
 }
 

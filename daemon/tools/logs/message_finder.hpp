@@ -27,9 +27,9 @@ class MessageFinder {
   explicit MessageFinder(const csv::ImportOptions& options) : keys_(options), bus_({}) {}
 
   /// The message in a line, or, of one key a line, the one that it ends; nullopt if there is none.
-  std::optional<LogMessage> find(std::string_view line);
+  std::optional<Message> find(std::string_view line);
   /// The last one of one key a line.
-  std::optional<LogMessage> finish();
+  std::optional<Message> finish();
   /// Returns true if the last line is a part of a message that goes on.
   bool has_absorbed() const { return keys_.has_absorbed(); }
   /// Returns true if the last line in which nothing was found has several keys.
@@ -39,9 +39,9 @@ class MessageFinder {
   std::vector<std::string> describe(std::string_view source) const { return keys_.describe(source); }
 
  private:
-  std::optional<LogMessage> json_message(std::string_view text);
-  std::optional<LogMessage> tempest_message(std::string_view text);
-  std::optional<LogMessage> bus_message(std::string_view line);
+  std::optional<Message> json_message(std::string_view text);
+  std::optional<Message> tempest_message(std::string_view text);
+  std::optional<Message> bus_message(std::string_view line);
 
   KeyReader keys_;
   drivers::decode::marine::BusLineDecoder bus_;

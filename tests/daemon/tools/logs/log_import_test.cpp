@@ -24,7 +24,7 @@ struct ImportedLog {
   std::string failure;
 };
 
-ImportedLog imported_from(const std::string& text, const LogOptions& options = {}) {
+ImportedLog imported_from(const std::string& text, const Options& options = {}) {
   ImportedLog imported;
   std::istringstream in(text);
   csv::Input input(in);
@@ -82,7 +82,7 @@ TEST(LogImport, OneSentenceOfSeveralIsTaken) {
   ASSERT_EQ(best.quantities.size(), 1U);
   EXPECT_EQ(best.quantities[0].air_temperature_c, 21.5);
   EXPECT_THAT(best.report.columns, testing::Contains(HasSubstr("not taken: MWV R of WI (2 of them")));
-  LogOptions options;
+  Options options;
   options.sentence = "MWV R";
   EXPECT_EQ(imported_from(text, options).readings.at(1).direction_deg, 20.0);
   EXPECT_EQ(imported_from(text + "$WIMWV,30,R,7.0,M,A\n$WIMWV,40,R,7.0,M,A\n$WIMWV,50,R,7.0,M,A\n").readings.size(), 5U)
@@ -94,7 +94,7 @@ TEST(LogImport, OneSentenceOfSeveralIsTaken) {
 TEST(LogImport, WithoutATimeItSaysWhichOptionsHelp) {
   const std::string text = "$WIMWV,10,R,5.0,M,A\n$WIMWV,20,R,6.0,M,A*00\n$WIMWV,30,R,7.0,M,A\n";
   EXPECT_THAT(imported_from(text).failure, testing::AllOf(HasSubstr("--start"), HasSubstr("--interval")));
-  LogOptions options;
+  Options options;
   options.start = kEvening;
   options.interval = 250ms;
   const auto imported = imported_from(text, options);
@@ -139,7 +139,7 @@ TEST(LogImport, KeysNameTheWindAsColumnsDo) {
 }
 
 TEST(LogImport, KeysAndUnitsCanBeGiven) {
-  LogOptions options;
+  Options options;
   options.table.columns[static_cast<std::size_t>(csv::Role::kSpeed)] = "anemo";
   options.table.columns[static_cast<std::size_t>(csv::Role::kDirection)] = "vane";
   options.table.unit = csv::find_speed_unit("kn");
@@ -150,7 +150,7 @@ TEST(LogImport, KeysAndUnitsCanBeGiven) {
 }
 
 TEST(LogImport, OneKeyALineIsAMessageForEachTurn) {
-  LogOptions options;
+  Options options;
   options.start = kEvening;
   options.interval = 2s;
   const auto imported = imported_from(
@@ -204,7 +204,7 @@ TEST(LogImport, ReadsNmea2000WithItsTimes) {
   const std::string raw =
       "23:59:59.500 R 09FD0203 09 F4 01 10 27 FA FF FF\n00:00:00.250 R 09FD0203 09 F4 01 10 27 FA FF FF\n";
   EXPECT_THAT(imported_from(raw).failure, HasSubstr("--start with the first day"));
-  LogOptions options;
+  Options options;
   options.start = kEvening;
   const auto days = imported_from(raw, options);
   ASSERT_EQ(days.readings.size(), 2U) << days.failure;
