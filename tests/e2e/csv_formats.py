@@ -26,6 +26,7 @@ class Sample:
     refused: int = 0
     told: tuple = ()  # what the report must say
     units: str = "m/s"  # of speed, as found
+    encoding: str = "utf-8"
     weather: dict = dataclasses.field(default_factory=dict)  # of the first row: quantity: value
 
 
@@ -476,3 +477,145 @@ def daylight_saving():
         true.append((utc, m.speed, float(m.direction), None))
     return Sample("a change to winter time", "\n".join(lines) + "\n", lambda text: true,
                   options=("--zone", "Europe/Berlin"))
+
+
+def typical_hours(count):
+    """Hours of a year whose months are of different years, as (year, month, day, hour from 1 to 24, moment)."""
+    years = {1: 1988, 2: 1979, 3: 1991, 4: 1985}
+    begin = datetime.datetime(1989, 1, 30, tzinfo=UTC)
+    for i, m in enumerate(moments(count, minutes(60))):
+        end = begin + datetime.timedelta(hours=i + 1)
+        day, hour = (end, end.hour) if end.hour else (end - datetime.timedelta(days=1), 24)
+        yield years[day.month], day, hour, end, m
+
+
+@sample
+def tmy3():
+    lines = ['723170,"GREENSBORO",NC,-5.0,36.100,-79.950,273',
+             "Date (MM/DD/YYYY),Time (HH:MM),GHI (W/m^2),Dry-bulb (C),Wdir (degrees),Wdir source,Wspd (m/s),Wspd source"]
+    true = []
+    for year, day, hour, end, m in typical_hours(100):
+        lines.append(f"{day:%m/%d}/{year},{hour:02}:00,0,{m.temperature},{m.direction},A,{m.speed},A")
+        true.append((end + datetime.timedelta(hours=5), m.speed, float(m.direction), None))
+    return Sample("NREL TMY3", "\n".join(lines) + "\n", lambda text: true, told=("a typical year", "in -05:00 as the file states"))
+
+
+@sample
+def epw():
+    lines = ["LOCATION,Berlin,-,DEU,IWEC Data,103840,52.47,13.40,1.0,49.0"] + ["DESIGN CONDITIONS,0", "TYPICAL/EXTREME PERIODS,0",
+             "GROUND TEMPERATURES,0", "HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0", "COMMENTS 1,made up", "COMMENTS 2,", "DATA PERIODS,1,1,Data,Sunday,1/1,12/31"]
+    true = []
+    for year, day, hour, end, m in typical_hours(100):
+        wind = "999" if hour == 5 else m.direction
+        lines.append(f"{year},{day.month},{day.day},{hour},60,?9?9,{m.temperature},3.0,80,101300,{'0,' * 10}{wind},{m.speed},5,5,16.0,77777,9,999999999")
+        true.append((end - datetime.timedelta(hours=1), m.speed, None if hour == 5 else float(m.direction), None))
+    return Sample("EnergyPlus weather (EPW)", "\r\n".join(lines) + "\r\n", lambda text: true, told=("written by EnergyPlus weather", "a typical year"))
+
+
+@sample
+def pvgis():
+    lines = ["Latitude (decimal degrees): 45.000", "Longitude (decimal degrees): 8.000", "month,year", "1,2016", "2,2007",
+             "time(UTC),T2m,RH,G(h),WS10m,WD10m,SP"]
+    true = []
+    begin = datetime.datetime(2016, 1, 30, tzinfo=UTC)
+    for i, m in enumerate(moments(90, minutes(60))):
+        utc = begin + datetime.timedelta(hours=i)
+        lines.append(f"{2016 if utc.month == 1 else 2007}{utc:%m%d:%H%M},{m.temperature},80.0,0.0,{m.speed},{m.direction}.0,99000.0")
+        true.append((utc.replace(year=2017), m.speed, float(m.direction), None))  # the next year without a 29 February
+    return Sample("PVGIS, typical year", "\r\n".join(lines) + "\r\n", lambda text: true, told=("a typical year",), units="m/s")
+
+
+@sample
+def nasa_power():
+    lines = ["-BEGIN HEADER-", "NASA/POWER Source Native Resolution Hourly Data", "WS10M     MERRA-2 Wind Speed at 10 Meters (m/s)",
+             "WD10M     MERRA-2 Wind Direction at 10 Meters (Degrees)", "-END HEADER-", "YEAR,MO,DY,HR,WS10M,WD10M"]
+    for i, m in enumerate(moments(60, minutes(60))):
+        lines.append(f"{m.utc.year},{m.utc.month},{m.utc.day},{m.utc.hour},{'-999.0' if i == 7 else m.speed},{m.direction}")
+    return Sample("NASA POWER", "\n".join(lines) + "\n",
+                  lambda text: readings((datetime.datetime(*map(int, r[:4]), tzinfo=UTC), number(r[4], missing=("-999.0",)), float(r[5]), None)
+                                        for r in table(text, skip=6)), refused=1)
+
+
+@sample
+def midc_raw():
+    zone = datetime.timezone(datetime.timedelta(hours=-7))
+    lines = ["Year,DOY,MST,Air Temperature [deg C],Avg Wind Speed @ 3m [m/s],Avg Wind Direction @ 3m [deg from N],Peak Wind Speed @ 3m [m/s]"]
+    for m in moments(200, minutes(1)):
+        local = m.utc.astimezone(zone)
+        lines.append(f"{local.year},{local.timetuple().tm_yday},{local.hour * 100 + local.minute},{m.temperature},{m.speed},{m.direction},{m.gust}")
+
+    def read(text):
+        for r in table(text):
+            local = datetime.datetime(int(r[0]), 1, 1, int(r[2]) // 100, int(r[2]) % 100, tzinfo=zone) + datetime.timedelta(days=int(r[1]) - 1)
+            yield local.astimezone(UTC), float(r[4]), float(r[5]), float(r[6])
+    return Sample("NREL MIDC, raw", "\n".join(lines) + "\n", lambda text: list(read(text)), told=("in -07:00 as the file states",))
+
+
+@sample
+def environment_canada():
+    lines = ['"Longitude (x)","Latitude (y)","Station Name","Climate ID","Date/Time (LST)","Year","Month","Day","Time (LST)","Temp (\u00b0C)",'
+             '"Wind Dir (10s deg)","Wind Dir Flag","Wind Spd (km/h)","Wind Spd Flag","Stn Press (kPa)"']
+    for i, m in enumerate(moments(48, minutes(60), 3.6, decimals=0)):
+        direction = "" if i == 6 else m.direction // 10 + 1
+        lines.append(f'"-123","49","VANCOUVER","1","{m.utc:%Y-%m-%d %H:%M}","{m.utc.year}","{m.utc:%m}","{m.utc:%d}","{m.utc:%H:%M}","{m.temperature}",'
+                     f'"{direction}","","{int(m.speed)}","","101.3"')
+    return Sample("Environment Canada", "\ufeff" + "\n".join(lines) + "\n",
+                  lambda text: [(moment(r[4], "%Y-%m-%d %H:%M"), int(r[12]) * KMH, number(r[10], 10), None) for r in table(text)], units="km/h")
+
+
+@sample
+def nrg():
+    lines = ["NRG Export Service", "Time Zone:\tUTC-5:00", "", "Sensor History"]
+    for channel, unit in ((1, "m/s"), (2, "m/s"), (13, "Deg")):
+        lines += [f"Channel:\t{channel}", f"Units:\t{unit}", "Height:\t10.00", ""]
+    lines += ["Gust Source Channel:\t2", ""] + [f"Note:\t{i}" for i in range(250)]
+    lines.append("Timestamp\tCh1_Anem_85.00m_S_Avg_m/s\tCh2_Anem_10.00m__Avg_m/s\tCh2_Anem_10.00m__SD_m/s\tCh13_Vane_10.00m_SSE_Avg_Deg")
+    zone = datetime.timezone(datetime.timedelta(hours=-5))
+    for m in moments(40, minutes(10)):
+        lines.append(f"{m.utc.astimezone(zone):%Y-%m-%d %H:%M:%S}\t9.9\t{m.speed}\t0.1\t{m.direction}")
+    return Sample("NRG Symphonie", "\r\n".join(lines) + "\r\n",
+                  lambda text: [(moment(r[0], "%Y-%m-%d %H:%M:%S", zone), float(r[2]), float(r[4]), None)
+                                for r in table(text, "\t", len(lines) - 40)])
+
+
+@sample
+def japan_meteorological_agency():
+    kanji = "北 北北東 北東 東北東 東 東南東 南東 南南東 南 南南西 南西 西南西 西 西北西 北西 北北西".split()
+    zone = datetime.timezone(datetime.timedelta(hours=9))
+    lines = ["ダウンロードした時刻：2024/02/01 12:00:00", "", ",東京,東京,東京,東京,東京", "年月日時,風速(m/s),風速(m/s),風速(m/s),風速(m/s),風速(m/s)",
+             ",,,風向,風向,", ",,品質情報,,品質情報,均質番号"]
+    for i, m in enumerate(moments(48, minutes(60))):
+        local = m.utc.astimezone(zone)
+        lines.append(f"{local.year}/{local.month}/{local.day} {local.hour}:00:00,{m.speed},8,{'静穏' if i == 9 else kanji[i % 16]},8,1")
+    return Sample("JMA (Shift_JIS)", "\r\n".join(lines) + "\r\n",
+                  lambda text: [(moment(r[0], "%Y/%m/%d %H:%M:%S", zone), float(r[1]), kanji.index(r[3]) * 22.5 if r[3] in kanji else None, None)
+                                for r in table(text, skip=6)],
+                  options=("--zone", "Asia/Tokyo"), told=("text in Shift_JIS", "written by Japan Meteorological Agency"), encoding="cp932")
+
+
+@sample
+def cumulus_mx():
+    lines = [f"{m.utc:%d/%m/%y},{m.utc:%H:%M},{m.temperature},80,9.0,{m.speed},{m.gust},{m.direction}" + ",0.0" * 20 for m in moments(40, minutes(10), 3.6)]
+    return Sample("CumulusMX", "\n".join(lines) + "\n",
+                  lambda text: [(moment(r[0] + r[1], "%d/%m/%y%H:%M"), float(r[5]) * KMH, float(r[7]), float(r[6]) * KMH) for r in table(text, skip=0)],
+                  options=("--unit", "km/h"), units="km/h", told=("written by CumulusMX",))
+
+
+@sample
+def excel_unicode_text():
+    lines = ["Zeit\tWind (km/h)\tB\u00f6e (km/h)\tWindrichtung (\u00b0)"]
+    for m in moments(40, minutes(10), 3.6):
+        lines.append(f"{m.utc:%d.%m.%Y %H:%M}\t{m.speed}\t{m.gust}\t{m.direction}".replace(".", ",").replace(f"{m.utc:%d,%m,%Y}", f"{m.utc:%d.%m.%Y}"))
+    return Sample("Excel, Unicode text", "\r\n".join(lines) + "\r\n",
+                  lambda text: [(moment(r[0], "%d.%m.%Y %H:%M"), number(r[1], KMH), number(r[3]), number(r[2], KMH)) for r in table(text, "\t")],
+                  units="km/h", told=("text in UTF-16",), encoding="utf-16")
+
+
+@sample
+def french_latin1():
+    lines = ["Date;Heure;Vent (km/h);Rafale (km/h);Direction du vent (\u00b0)"]
+    for m in moments(40, minutes(10), 3.6):
+        lines.append(f"{m.utc:%d/%m/%Y};{m.utc:%H:%M};{m.speed};{m.gust};{m.direction}")
+    return Sample("French, Latin-1", "\r\n".join(lines) + "\r\n",
+                  lambda text: [(moment(r[0] + r[1], "%d/%m/%Y%H:%M"), float(r[2]) * KMH, float(r[4]), float(r[3]) * KMH) for r in table(text, ";")],
+                  units="km/h", told=("text in Latin-1",), encoding="latin-1")

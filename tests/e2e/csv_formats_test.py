@@ -8,7 +8,9 @@ import csv
 import datetime
 import io
 import math
+import os
 import pathlib
+import pty
 import re
 import subprocess
 import sys
@@ -50,7 +52,7 @@ class Formats(unittest.TestCase):
 
     def imported(self, sample, from_pipe=False):
         """The import's output, and the readings and weather that were recorded."""
-        self.source.write_bytes(sample.text.encode())
+        self.source.write_bytes(sample.text.encode(sample.encoding))
         done = yuragi("import", "-" if from_pipe else self.source, "-o", self.recording, "--force", *sample.options,
                       text=sample.text if from_pipe else None)
         self.assertEqual(done.returncode, 0, f"{sample.name}: {done.stderr}{done.stdout}")
@@ -147,6 +149,29 @@ class Formats(unittest.TestCase):
                     self.assertEqual((one[0], one[3]), (other[0], None), name)
                     self.assertTrue(math.isclose(one[1], other[1], rel_tol=1e-9) and one[2] == other[2], (name, one, other))
         self.assertIn("--start", self.refused("\n".join(nmea(f"WIMWV,{d}.0,R,{s},M,A") for s, d in winds)))
+
+    def test_a_terminal_is_asked_before_anything_is_written(self):
+        self.source.write_text("time,speed_ms\n2024-01-01 10:00,1\n2024-01-01 10:10,2\n", encoding="utf-8")
+        for answer, options, is_written in (("n\n", (), False), ("\n", (), True), ("", ("--yes",), True)):
+            with self.subTest(answer):
+                self.recording.unlink(missing_ok=True)
+                terminal, other = pty.openpty()
+                program = subprocess.Popen([YURAGI, "import", self.source, "-o", self.recording, *options], stdin=other, stdout=other, stderr=other)
+                os.close(other)
+                shown = b""
+                if answer:
+                    while b"[Y/n]" not in shown:
+                        shown += os.read(terminal, 1000)
+                    self.assertFalse(self.recording.exists())
+                    self.assertIn(b"mean 1.50 m/s", shown)
+                    os.write(terminal, answer.encode())
+                while program.poll() is None:
+                    try:
+                        shown += os.read(terminal, 1000)
+                    except OSError:  # the program has ended
+                        program.wait()
+                os.close(terminal)
+                self.assertEqual((program.returncode, self.recording.exists()), (0, is_written), shown)
 
     def refused(self, text, *options):
         self.recording.unlink(missing_ok=True)

@@ -207,6 +207,9 @@ class ColumnChoice {
 
   void choose_time_by_name() {
     const auto moment = find_time_column(Role::kTime);
+    // Date and time in one column are better than in two.
+    if (moment && has_date(first_value(*moment)) && first_value(*moment).find(':') != std::string_view::npos)
+      return take(Role::kTime, *moment);
     const auto date = find_time_column(Role::kDate);
     const auto clock = date ? find_clock_beside(*date) : std::nullopt;
     if (!moment && date && clock) {

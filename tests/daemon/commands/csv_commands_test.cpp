@@ -317,6 +317,30 @@ TEST_F(CsvCommands, ImportTakesAFileWithoutAHeaderAndOneStationOfSeveral) {
   }
 }
 
+TEST_F(CsvCommands, ADryRunShowsWhatWouldBeWritten) {
+  write("a.csv", "time,speed_ms\n2024-01-01 10:00,1\n2024-01-01 10:10,2\n2024-01-01 10:20,x\n");
+  const Outcome outcome = yuragi({"import", path("a.csv"), "--dry-run"});
+  EXPECT_EQ(outcome.code, 0) << outcome.error;
+  EXPECT_THAT(outcome.output,
+              testing::AllOf(HasSubstr("from 2024-01-01T10:00:00.000Z to 2024-01-01T10:10:00.000Z"),
+                             HasSubstr("a reading every 10 min"), HasSubstr("mean 1.50 m/s, strongest 2.00 m/s"),
+                             HasSubstr("nothing was written: 2 readings of 3 rows, 1 left out")));
+  EXPECT_THAT(outcome.error, HasSubstr("left out: 1 row: not a number in speed"));
+  EXPECT_EQ(yuragi({"import", path("a.csv")}).code, kExitUsage) << "neither --output nor --dry-run";
+}
+
+TEST_F(CsvCommands, WhatIsHardlyAWindIsWrittenOnlyIfForced) {
+  std::string text = "time_s,speed_ms\n";
+  for (int i = 0; i < 50; ++i) text += std::to_string(i) + "," + (i % 2 == 0 ? "50" : "1") + "\n";
+  write("a.csv", text);
+  const Outcome refused = yuragi({"import", path("a.csv"), "-o", path("a.windlog")});
+  EXPECT_EQ(refused.code, kExitDataError);
+  EXPECT_THAT(refused.error, testing::AllOf(HasSubstr("implausible: in 100 % of the steps"), HasSubstr("--force")));
+  EXPECT_FALSE(std::filesystem::exists(path("a.windlog")));
+  EXPECT_EQ(yuragi({"import", path("a.csv"), "-o", path("a.windlog"), "--force"}).code, 0);
+  EXPECT_EQ(test::read_all(path("a.windlog")).size(), 50U);
+}
+
 TEST_F(CsvCommands, ExportRefusesWhatIsNoRecording) {
   write("a.txt", "hello");
   EXPECT_EQ(yuragi({"export", path("a.txt"), "-o", "-"}).code, kExitDataError);
