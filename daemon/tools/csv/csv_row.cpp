@@ -218,9 +218,10 @@ std::optional<double> RowReader::read_direction(std::string_view text) {
   // The name of a compass point, or a number in the unit of the column.
   static const std::map<std::string, double, std::less<>> kWords = {
       {"north", 0.0}, {"east", 90.0}, {"south", 180.0}, {"west", 270.0}};
-  std::optional<double> direction_deg = compass_point_deg(text);
-  if (!direction_deg && !is_ascii(text)) direction_deg = compass_point_deg(joined(words_of(text)));
-  if (!direction_deg) {
+  const bool is_name = (text[0] < '0' || text[0] > '9') && text[0] != '-';
+  std::optional<double> direction_deg = is_name ? compass_point_deg(text) : std::nullopt;
+  if (!direction_deg && is_name && !is_ascii(text)) direction_deg = compass_point_deg(joined(words_of(text)));
+  if (!direction_deg && is_name) {
     if (const auto word = kWords.find(lower(text.substr(0, 6))); word != kWords.end()) direction_deg = word->second;
   }
   if (!direction_deg) {
@@ -246,6 +247,8 @@ std::optional<double> RowReader::read_direction(std::string_view text) {
 }
 
 std::optional<wind::StationQuantities> RowReader::read_quantities(const Fields& fields, const Instant& time) {
+  if (std::ranges::none_of(kQuantityRoles, [this](Role role) { return columns_.at(role).has_value(); }))
+    return std::nullopt;
   wind::StationQuantities quantities;
   quantities.time = time;
   for (std::size_t i = 0; i < kQuantityRoles.size(); ++i) {

@@ -201,6 +201,9 @@ class Surveyor {
       return;
     }
     tally(TimeFormat::kIso).add(parse_time(text, TimeFormat::kIso));
+    // No day and no month has three digits.
+    constexpr std::size_t kDigitsOfYear = 3;
+    if (std::min(text.find_first_not_of("0123456789"), text.size()) >= kDigitsOfYear) return;
     const auto day_first = parse_time(text, TimeFormat::kDayFirst);
     const auto month_first = parse_time(text, TimeFormat::kMonthFirst);
     tally(TimeFormat::kDayFirst).add(day_first);

@@ -184,7 +184,10 @@ class CalendarText {
     return Nanoseconds(ns);
   }
 
+  bool begins_with_letter() const { return !rest_.empty() && is_letter(rest_.front()); }
+
   void take_weekday() {
+    if (!begins_with_letter()) return;
     static constexpr std::array<std::string_view, 7> kDays = {"mon", "tue", "wed", "thu", "fri", "sat", "sun"};
     if (rest_.size() < 4 || std::ranges::find(kDays, lower(rest_.substr(0, 3))) == kDays.end()) return;
     while (!rest_.empty() && is_letter(rest_.front())) rest_.remove_prefix(1);
@@ -195,7 +198,7 @@ class CalendarText {
   std::optional<int> take_month_name() {
     static constexpr std::array<std::string_view, 12> kMonths = {"jan", "feb", "mar", "apr", "may", "jun",
                                                                  "jul", "aug", "sep", "oct", "nov", "dec"};
-    if (rest_.size() < 3) return std::nullopt;
+    if (rest_.size() < 3 || !begins_with_letter()) return std::nullopt;
     const auto* const found = std::ranges::find(kMonths, lower(rest_.substr(0, 3)));
     if (found == kMonths.end()) return std::nullopt;
     while (!rest_.empty() && is_letter(rest_.front())) rest_.remove_prefix(1);
