@@ -64,7 +64,8 @@ class Receiver:
             self.client.RegisterUniverse(universe, OlaClient.REGISTER, lambda data, of=universe: self.add(of, data))
 
     def add(self, universe, data):
-        self.levels[universe].append(data[CHANNEL - 1])
+        if len(data) >= CHANNEL:  # a universe without a source can have no levels
+            self.levels[universe].append(data[CHANNEL - 1])
 
     def wait_until(self, is_found, what):
         end = time.monotonic() + HANG_S
