@@ -38,6 +38,7 @@ test_packages=(
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
   mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines
   python3-nmea2                                           # an independent reader of NMEA 0183
+  ola ola-python                                          # an independent receiver of sACN and Art-Net
   puredata-core python3-yaml                              # run and read examples
   avahi-daemon avahi-utils dbus-daemon iproute2           # services that a network's programs find, in networks of a test's own
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker

@@ -8,13 +8,13 @@ allow that.
 """
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
+import own_network
 from programs import HANG_S, Program
 
 BUS = """<busconfig><type>system</type><listen>unix:path=/run/dbus/system_bus_socket</listen><auth>EXTERNAL</auth>
@@ -25,24 +25,8 @@ BUS = """<busconfig><type>system</type><listen>unix:path=/run/dbus/system_bus_so
 # avahi-daemon wants /run/avahi-daemon to belong to its user; here there is one user only.
 USERS = {"passwd": "root:x:0:0::/:/bin/sh\navahi:x:0:0::/:/bin/sh\n", "group": "root:x:0:\navahi:x:0:\nnetdev:x:0:\n"}
 AVAHI = "[server]\nuse-ipv6=no\nratelimit-interval-usec=1000\nratelimit-burst=10000\n"
-
-
-def enter_namespaces_of_its_own():
-    """Runs this program again where it may make networks. Says why it cannot, if it cannot."""
-    if os.environ.get("YURAGI_ANNOUNCEMENT_TEST_INSIDE"):
-        return ""
-    missing = [name for name in ("unshare", "nsenter", "ip", "dbus-daemon", "avahi-daemon", "avahi-publish", "avahi-browse")
-               if not shutil.which(name)]
-    if missing:
-        return f"not there: {', '.join(missing)} (config/setup.sh --test installs it)"
-    unshare = ["unshare", "--map-root-user", "--net", "--mount", "--uts"]
-    if subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL, check=False).returncode != 0:
-        return "the system allows no networks of its own"
-    os.environ["YURAGI_ANNOUNCEMENT_TEST_INSIDE"] = "1"
-    os.execvp("unshare", [*unshare, sys.executable, *sys.argv])
-
-
-WHY_NOT = enter_namespaces_of_its_own()
+PROGRAMS = ("nsenter", "ip", "dbus-daemon", "avahi-daemon", "avahi-publish", "avahi-browse")
+WHY_NOT = own_network.enter("mount", "uts", needs=PROGRAMS)
 YURAGI = os.path.join(os.path.abspath(sys.argv.pop(1)), "yuragi")
 
 

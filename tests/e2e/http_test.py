@@ -168,6 +168,21 @@ class Http(unittest.TestCase):
             for key in table["parameters"]:
                 self.assertIn(f"<code>{key['name']}</code>", texts["keys.html"])
 
+    def open_web_sockets(self, count):
+        """The status codes by which `count` WebSockets are answered that all connect, then ask, and then read."""
+        host, port = self.base.removeprefix("http://").split(":")
+        sockets = [self.enterContext(socket.create_connection((host, int(port)), HANG_S)) for _ in range(count)]
+        for one in sockets:
+            one.sendall(f"GET /ws HTTP/1.1\r\nHost: {host}:{port}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+                        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode())
+        return [int(self.enterContext(one.makefile("rb")).readline().split()[1]) for one in sockets]
+
+    def test_64_web_sockets_that_open_at_once_are_served_and_no_more(self):
+        self.start_daemon('[[sensor]]\ndriver = "synthetic"\n')
+        self.assertEqual(self.open_web_sockets(64), [101] * 64)
+        self.assertEqual(self.open_web_sockets(1), [503])
+        self.assertEqual(self.ask("/api/v1/status")[0], 200, "HTTP has places of its own")
+
     def test_a_sensor_that_is_not_there_is_told_with_what_to_do(self):
         self.start_daemon(f'[[sensor]]\nname = "roof"\ndriver = "nmea"\ntransport = "tcp"\nhost = "127.0.0.1"\nport = {free_port()}\n')
         self.wait_for("/healthz", 503, "roof.*127.0.0.1")

@@ -6,7 +6,6 @@ usage: network_search_test.py FOLDER_OF_PROGRAMS
 The ports are those of the protocols, and so the test makes a network of its own, where the system allows it.
 """
 import os
-import shutil
 import socket
 import struct
 import subprocess
@@ -15,21 +14,8 @@ import tempfile
 import threading
 import unittest
 
+import own_network
 from programs import HANG_S, Program
-
-
-def enter_network_of_its_own():
-    """Runs this program again in a network namespace in which nothing but the loopback is."""
-    if os.environ.get("YURAGI_SEARCH_TEST_INSIDE"):
-        import fcntl
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:  # ip link set lo up
-            fcntl.ioctl(any_socket, 0x8914, struct.pack("16sh14x", b"lo", 0x1 | 0x40))  # SIOCSIFFLAGS, IFF_UP | IFF_RUNNING
-        return
-    unshare = ["unshare", "--map-root-user", "--net"]
-    if shutil.which("unshare") and subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
-        os.environ["YURAGI_SEARCH_TEST_INSIDE"] = "1"
-        os.execvp("unshare", [*unshare, sys.executable, *sys.argv])
-    print("no network of its own: UDP ports 5353, 46000 and 50222 of the loopback must be free")
 
 
 def name_of(*labels):
@@ -104,6 +90,8 @@ class NetworkSearch(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    enter_network_of_its_own()
+    why_not = own_network.enter()
+    if why_not:
+        print(f"{why_not}: UDP ports 5353, 46000 and 50222 of the loopback must be free")
     BIN = os.path.abspath(sys.argv.pop(1))
     unittest.main()

@@ -11,19 +11,17 @@ ended only when the next of them or the next page begins, so that the lines betw
 daemon. Lines in NOT_RUN are counted and not run. TOML is given to `yuragi check-config`; Python, which begins with "from", is compiled.
 """
 import collections
-import fcntl
 import os
 import pathlib
 import re
 import shutil
 import signal
-import socket
-import struct
 import subprocess
 import sys
 import tempfile
 import time
 
+import own_network
 from programs import HANG_S
 
 MAX_README_WORDS = 1200
@@ -243,19 +241,6 @@ def faults_of_documents(project):
     return faults
 
 
-def enter_network_of_its_own():
-    """Runs this again in a network namespace, where the addresses that the documents name are free; not where that is not allowed."""
-    if "YURAGI_README_TEST_INSIDE" in os.environ:
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:  # ip link set lo up
-            fcntl.ioctl(any_socket, 0x8914, struct.pack("16sh14x", b"lo", 0x1 | 0x40))  # SIOCSIFFLAGS, IFF_UP | IFF_RUNNING
-        return
-    unshare = ["unshare", "--map-root-user", "--net"]
-    if shutil.which("unshare") and subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
-        os.environ["YURAGI_README_TEST_INSIDE"] = "1"
-        os.execvp("unshare", [*unshare, sys.executable, *sys.argv])
-    print("no network of its own: the addresses that the documents name must be free")
-
-
 def check_python(terminal, block, folder):
     """A program of a document: its imports work, and the rest can be compiled."""
     compile("\n".join(block), "the guide", "exec")
@@ -266,7 +251,9 @@ def check_python(terminal, block, folder):
 
 
 def main():
-    enter_network_of_its_own()
+    why_not = own_network.enter()
+    if why_not:
+        print(f"{why_not}: the addresses that the documents name must be free")
     project, programs = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
     with tempfile.TemporaryDirectory() as name:
         clone = pathlib.Path(name)
