@@ -180,12 +180,15 @@ class Target {
       if (!id) throw ExitError(kExitCannotCreate, id.error().message);
       known = sensors_.emplace(sensor, *id).first;
     }
-    must(writer_.append(known->second, reading));
+    constexpr std::size_t kBatch = 128;
+    if (known->second != last_sensor_ || batch_.size() == kBatch) write_batch();
     last_sensor_ = known->second;
+    batch_.push_back(reading);
 
     // Transactions of bounded size; shows progress now and then when it takes long.
     constexpr std::size_t kRowsPerCommit = 100'000;
     if (++count_ % kRowsPerCommit == 0) {
+      write_batch();
       must(writer_.commit());
       const bool is_slow = std::chrono::steady_clock::now() - began_ > std::chrono::seconds(1);
       if (is_watched_ && is_slow) fmt::print(stderr, "\r{} readings", count_);
@@ -195,20 +198,27 @@ class Target {
 
   /// Of the sensor and time of the last reading.
   void take(const wind::StationQuantities& quantities) {
+    write_batch();
     const auto done = writer_.append(last_sensor_, quantities);
     if (!done) throw ExitError(kExitCannotCreate, done.error().message);
   }
 
   void close() {
     if (has_shown_) fmt::print(stderr, "\n");
+    write_batch();
     must(writer_.close());
   }
 
  private:
   static drivers::windlog::Writer open(const std::filesystem::path& file) {
-    auto writer = drivers::windlog::Writer::open(file);
+    auto writer = drivers::windlog::Writer::open(file, drivers::windlog::Durability::kOnceClosed);
     if (!writer) throw ExitError(kExitCannotCreate, writer.error().message);
     return std::move(*writer);
+  }
+
+  void write_batch() {
+    must(writer_.append(last_sensor_, batch_));
+    batch_.clear();
   }
 
   static void must(const Result<void, Failure>& done) {
@@ -221,6 +231,7 @@ class Target {
   bool has_shown_ = false;
   std::size_t count_ = 0;
   std::int64_t last_sensor_ = 0;
+  std::vector<wind::Reading> batch_;  ///< of that sensor
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };

@@ -72,24 +72,27 @@ bool is_recordable(const wind::Reading& reading) noexcept {
          utc_ns <= kMaxTime_ns;
 }
 
-Result<Writer, Failure> Writer::open(const std::filesystem::path& file) {
+Result<Writer, Failure> Writer::open(const std::filesystem::path& file, Durability durability) {
   auto database = sqlite::Database::open(file, sqlite::Access::kReadWrite);
   if (!database) return database.error();
   Writer writer(std::move(*database));
-  if (const auto done = writer.prepare_file(); !done) {
+  if (const auto done = writer.prepare_file(durability); !done) {
     writer.release();
     return done.error();
   }
   return writer;
 }
 
-Result<void, Failure> Writer::prepare_file() {
+Result<void, Failure> Writer::prepare_file(Durability durability) {
   database_.set_busy_timeout(sqlite::kBusyTimeout_ms);
 
   // Nothing is written before the file is known to be ours.
   const auto fresh = is_new(database_);
   if (!fresh) return fresh.error();
-  if (auto done = database_.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL"); !done) return done;
+  const char* const journal = durability == Durability::kEachCommit
+                                  ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL"
+                                  : "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF";
+  if (auto done = database_.run(journal); !done) return done;
 
   // In one transaction: the whole schema or nothing, even after a power cut.
   if (*fresh) {
@@ -287,7 +290,7 @@ Result<void, Failure> Writer::prepare_insert(std::int64_t sensor, std::int64_t s
                                   " (time_ns, clock_ns, speed_m_s, direction_deg, gust_m_s, quality) "
                                   "VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT DO NOTHING");
   if (!insert) return undo();
-  insert_reading_[sensor] = {.statement = std::move(*insert), .series = series};
+  insert_reading_[sensor] = {.statement = std::move(*insert), .batch = std::nullopt, .series = series};
   return {};
 }
 
@@ -305,23 +308,91 @@ Result<void, Failure> Writer::append(std::int64_t sensor, const wind::Reading& r
   std::int64_t since_ns = into_session.count();
   for (int tries = 0;; ++tries) {
     if (since_ns == into.last_since_ns || tries == kMaxTries) since_ns = std::max(since_ns, into.last_since_ns) + 1;
-    std::int64_t clock_ns = 0;
-    if (since_ns >= kMaxTime_ns - begin_ns_ ||
-        __builtin_sub_overflow(nanoseconds(reading.time.utc), nanoseconds(started_.utc), &clock_ns) ||
-        __builtin_sub_overflow(clock_ns, since_ns, &clock_ns) || clock_ns < -kMaxTime_ns || clock_ns > kMaxTime_ns) {
+    const auto clock_ns = clock_ns_of(reading, since_ns);
+    if (!clock_ns) {
       return Failure{database_.file().string() + ": this reading has impossible values and cannot be recorded"};
     }
     into.statement.bind(1, begin_ns_ + since_ns);
-    into.statement.bind(2, clock_ns);
+    into.statement.bind(2, *clock_ns);
     if (auto done = write(into.statement); !done) return done;
     if (database_.changed_rows() > 0) break;
     ++since_ns;
   }
   into.last_since_ns = std::max(into.last_since_ns, since_ns);
-  if (counts_) {
-    wind::Reading stored = reading;
-    stored.time.mono = started_.mono + Nanoseconds(since_ns);
-    (*counts_)[into.series].add(stored);
+  count(into, reading, since_ns);
+  return {};
+}
+
+/// By how much the reading's clock differs from the recording's time line; nullopt if its time cannot be.
+std::optional<std::int64_t> Writer::clock_ns_of(const wind::Reading& reading, std::int64_t since_ns) const {
+  std::int64_t clock_ns = 0;
+  if (since_ns >= kMaxTime_ns - begin_ns_ ||
+      __builtin_sub_overflow(nanoseconds(reading.time.utc), nanoseconds(started_.utc), &clock_ns) ||
+      __builtin_sub_overflow(clock_ns, since_ns, &clock_ns) || clock_ns < -kMaxTime_ns || clock_ns > kMaxTime_ns) {
+    return std::nullopt;
+  }
+  return clock_ns;
+}
+
+void Writer::count(const Insert& insert, const wind::Reading& reading, std::int64_t since_ns) {
+  if (!counts_) return;
+  wind::Reading stored = reading;
+  stored.time.mono = started_.mono + Nanoseconds(since_ns);
+  (*counts_)[insert.series].add(stored);
+}
+
+Result<void, Failure> Writer::append(std::int64_t sensor, std::span<const wind::Reading> readings) {
+  while (!readings.empty()) {
+    const auto insert = insert_reading_.find(sensor);
+    if (insert != insert_reading_.end() && readings.size() >= kBatch &&
+        fits_batch(insert->second, readings.first(kBatch))) {
+      if (auto done = append_batch(insert->second, readings.first(kBatch)); !done) return done;
+      readings = readings.subspan(kBatch);
+    } else {
+      if (auto done = append(sensor, readings.front()); !done) return done;
+      readings = readings.subspan(1);
+    }
+  }
+  return {};
+}
+
+/// Returns true if each is certain to have a time that is free: later than all of its series.
+bool Writer::fits_batch(const Insert& insert, std::span<const wind::Reading> readings) const {
+  const auto writers =
+      std::ranges::count_if(insert_reading_, [&](const auto& other) { return other.second.series == insert.series; });
+  std::int64_t last_since_ns = insert.last_since_ns;
+  return writers == 1 && std::ranges::all_of(readings, [&](const wind::Reading& reading) {
+           const std::int64_t since_ns = (reading.time.mono - started_.mono).count();
+           const bool fits = is_recordable(reading) && since_ns > last_since_ns && clock_ns_of(reading, since_ns);
+           last_since_ns = since_ns;
+           return fits;
+         });
+}
+
+Result<void, Failure> Writer::append_batch(Insert& insert, std::span<const wind::Reading> readings) {
+  if (!insert.batch) {
+    std::string sql = "INSERT INTO reading_" + std::to_string(insert.series) +
+                      " (time_ns, clock_ns, speed_m_s, direction_deg, gust_m_s, quality) VALUES ";
+    for (std::size_t i = 0; i < kBatch; ++i) sql += i == 0 ? "(?, ?, ?, ?, ?, ?)" : ", (?, ?, ?, ?, ?, ?)";
+    auto prepared = database_.prepare(sql);
+    if (!prepared) return undo();
+    insert.batch = std::move(*prepared);
+  }
+  int position = 0;
+  for (const wind::Reading& reading : readings) {
+    const std::int64_t since_ns = (reading.time.mono - started_.mono).count();
+    insert.batch->bind(++position, begin_ns_ + since_ns);
+    insert.batch->bind(++position, *clock_ns_of(reading, since_ns));
+    insert.batch->bind(++position, reading.speed_m_s);
+    insert.batch->bind(++position, reading.direction_deg);
+    insert.batch->bind(++position, reading.gust_m_s);
+    insert.batch->bind(++position, static_cast<std::int64_t>(reading.quality));
+  }
+  if (auto done = write(*insert.batch); !done) return done;
+  for (const wind::Reading& reading : readings) {
+    const std::int64_t since_ns = (reading.time.mono - started_.mono).count();
+    insert.last_since_ns = since_ns;
+    count(insert, reading, since_ns);
   }
   return {};
 }

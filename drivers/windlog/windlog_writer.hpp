@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "drivers/windlog/session_count.hpp"
@@ -22,6 +23,14 @@ struct Session {
   std::string_view configuration;  ///< TOML, as read
 };
 
+/// When a recording is safe.
+enum class Durability : std::uint8_t {
+  kEachCommit,  ///< what is committed survives the death of the process and a power cut
+  /// When it is closed, and the caller has brought it to the disk: for a file that nobody may read before. After a
+  /// failure there is nothing to keep. Writes in two thirds of the time.
+  kOnceClosed,
+};
+
 /// Writes a recording (.windlog, format.hpp). Whoever writes a series of files holds its SeriesLock. What is committed
 /// survives the death of the process and a power cut; what was written since is lost with either, so commit often.
 ///
@@ -32,7 +41,8 @@ class Writer {
  public:
   /// Opens a recording to append to, or creates it. Refuses a file that is something else, and one of another version
   /// of the format (format.hpp), without changing it.
-  static Result<Writer, Failure> open(const std::filesystem::path& file);
+  static Result<Writer, Failure> open(const std::filesystem::path& file,
+                                      Durability durability = Durability::kEachCommit);
 
   Writer(Writer&&) noexcept = default;
   Writer& operator=(Writer&&) = delete;
@@ -54,6 +64,9 @@ class Writer {
   /// nothing. One that is earlier than its session is given the session's begin; one that has the time of another of
   /// its sensor's is moved to a nanosecond that is free.
   Result<void, Failure> append(std::int64_t sensor, const wind::Reading& reading);
+
+  /// Adds readings of one sensor, as if one by one; in about half of the time if each is later than the one before.
+  Result<void, Failure> append(std::int64_t sensor, std::span<const wind::Reading> readings);
 
   /// Adds the other quantities of a sensor's station, as far as they are plausible: one row a second (format.hpp).
   /// Returns false, with nothing undone, if they cannot be added: none is plausible, the time is impossible, there is
@@ -83,9 +96,13 @@ class Writer {
   Result<void, Failure> close();
 
  private:
+  /// So many readings in one statement.
+  static constexpr std::size_t kBatch = 32;
+
   /// Into a sensor's series.
   struct Insert {
     sqlite::Statement statement;
+    std::optional<sqlite::Statement> batch = std::nullopt;  ///< of kBatch readings; prepared when it is first needed
     std::int64_t series = 0;
     std::int64_t last_since_ns = -1;  ///< of the latest reading, since the session's start
   };
@@ -98,7 +115,7 @@ class Writer {
 
   explicit Writer(sqlite::Database database) : database_(std::move(database)) {}
 
-  Result<void, Failure> prepare_file();
+  Result<void, Failure> prepare_file(Durability durability);
   Result<std::optional<Place>, Failure> last_place();
   Result<std::int64_t, Failure> begin_of_next_session(UtcTime started);
   Result<std::int64_t, Failure> series_named(std::string_view name);
@@ -106,6 +123,10 @@ class Writer {
   Result<void, Failure> prepare_insert(std::int64_t sensor, std::int64_t series);
   Result<void, Failure> begin_transaction();
   bool prepare_quantities();
+  bool fits_batch(const Insert& insert, std::span<const wind::Reading> readings) const;
+  Result<void, Failure> append_batch(Insert& insert, std::span<const wind::Reading> readings);
+  std::optional<std::int64_t> clock_ns_of(const wind::Reading& reading, std::int64_t since_ns) const;
+  void count(const Insert& insert, const wind::Reading& reading, std::int64_t since_ns);
   std::optional<std::int64_t> last_quantities_ns();
   Result<void, Failure> write(sqlite::Statement& statement);
   Result<void, Failure> write_counts();

@@ -59,8 +59,8 @@ void Preview::take(std::string_view sensor, const wind::Reading& reading) {
   }
   if (reading.direction_deg) {
     ++with_direction_;
-    const auto* const point = std::ranges::find(kCompassPoints, nearest_compass_point(*reading.direction_deg));
-    ++sectors_[static_cast<std::size_t>(point - kCompassPoints.begin()) % sectors_.size()];
+    const auto point = static_cast<std::size_t>(std::lround(*reading.direction_deg / kDegPerCompassPoint));
+    ++sectors_[point % sectors_.size()];
   }
 
   const auto known = last_.find(sensor);
@@ -73,7 +73,9 @@ void Preview::take(std::string_view sensor, const wind::Reading& reading) {
   const Nanoseconds step = reading.time.mono - last.time;
   ++step_count_;
   step_sum_ += step;
-  ++steps_[rounded(step.count())];
+  // Most steps are as long as the one before.
+  if (step.count() != last_step_.first) last_step_ = {step.count(), &steps_[rounded(step.count())]};
+  ++*last_step_.second;
   const double change_m_s = std::abs(reading.speed_m_s - last.speed_m_s);
   greatest_change_m_s_ = std::max(greatest_change_m_s_, change_m_s);
   if (change_m_s > kGreatChange_m_s) ++great_changes_;

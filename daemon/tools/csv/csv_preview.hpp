@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/base/time.hpp"
@@ -38,8 +39,9 @@ class Preview {
   Nanoseconds usual_step() const;
   double mean_m_s() const;
 
-  std::map<std::string, Last, std::less<>> last_;  ///< of each sensor
-  std::map<std::int64_t, std::size_t> steps_;      ///< how often each comes, in nanoseconds of two digits
+  std::map<std::string, Last, std::less<>> last_;                 ///< of each sensor
+  std::pair<std::int64_t, std::size_t*> last_step_{-1, nullptr};  ///< in steps_
+  std::map<std::int64_t, std::size_t> steps_;  ///< how often each comes, in nanoseconds of two digits
   std::optional<Instant> first_;
   UtcTime last_utc_;
   std::size_t count_ = 0;

@@ -163,7 +163,8 @@ Result<std::optional<double>, RowRefusal> RowReader::read_number(const Fields& f
 
 Result<std::optional<double>, RowRefusal> RowReader::read_speed(const Fields& fields, Role role) {
   // A calm in words is a speed.
-  if (const auto text = fields.at(role); text && text->size() == 4 && lower(*text) == "calm") return std::optional(0.0);
+  if (const auto text = fields.at(role); text && text->size() == 4 && text->front() > '9' && lower(*text) == "calm")
+    return std::optional(0.0);
   return read_number(fields, role);
 }
 

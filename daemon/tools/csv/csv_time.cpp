@@ -282,7 +282,47 @@ std::optional<Time> on_day(std::chrono::sys_days day, Nanoseconds clock, std::op
   return Time{UtcTime(day) + clock, offset};
 }
 
+/// "2018-07-20T14:00:00", with a blank for the T or a fraction or Z behind it, as nearly all programs write it. Nullopt
+/// for anything else, which may be a time all the same.
+std::optional<Time> parse_usual_iso(std::string_view text) {
+  constexpr std::string_view kForm = "0000-00-00T00:00:00";
+  if (text.size() < kForm.size()) return std::nullopt;
+  for (std::size_t i = 0; i < kForm.size(); ++i) {
+    const bool fits = kForm[i] == '0' ? is_digit(text[i]) : text[i] == kForm[i] || (kForm[i] == 'T' && text[i] == ' ');
+    if (!fits) return std::nullopt;
+  }
+  const auto two = [text](std::size_t at) { return 10 * (text[at] - '0') + (text[at + 1] - '0'); };
+  const std::chrono::year_month_day date(std::chrono::year(100 * two(0) + two(2)),
+                                         std::chrono::month(static_cast<unsigned>(two(5))),
+                                         std::chrono::day(static_cast<unsigned>(two(8))));
+  const int hour = two(11);
+  const int minute = two(14);
+  const int second = two(17);
+  if (!date.ok() || hour > 23 || minute > 59 || second > 59) return std::nullopt;
+  std::int64_t fraction_ns = 0;
+  std::size_t end = kForm.size();
+  if (end < text.size() && text[end] == '.') {
+    ++end;
+    std::int64_t unit_ns = 100'000'000;
+    for (; end < text.size() && is_digit(text[end]); ++end, unit_ns /= 10) fraction_ns += unit_ns * (text[end] - '0');
+    if (text[end - 1] == '.') return std::nullopt;
+  }
+  std::optional<Nanoseconds> offset;
+  if (end < text.size() && text[end] == 'Z') {
+    offset = Nanoseconds{0};
+    ++end;
+  }
+  if (end != text.size()) return std::nullopt;
+  return on_day(
+      std::chrono::sys_days(date),
+      std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second) + Nanoseconds(fraction_ns),
+      offset);
+}
+
 std::optional<Time> parse_calendar(std::string_view text, TimeFormat format) {
+  if (format == TimeFormat::kIso) {
+    if (const auto usual = parse_usual_iso(text)) return usual;
+  }
   CalendarText calendar(text);
   const auto day = calendar.take_day(format);
   if (!day) return std::nullopt;

@@ -3,10 +3,12 @@
 #include <array>
 #include <fstream>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
 #include "drivers/windlog/format.hpp"
+#include "drivers/windlog/verify_recording.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -405,6 +407,46 @@ TEST(Windlog, AFullDiskUndoesToTheLastCommitAndTheWriterLivesOn) {
   ASSERT_GE(logged.size(), 2U);
   EXPECT_EQ(logged.size() % 500, 1U);
   EXPECT_EQ(logged.back().reading.speed_m_s, 2.0);
+}
+
+TEST(Windlog, ManyAtOnceAreAsOneByOne) {
+  const test::TemporaryFolder folder;
+  std::vector<wind::Reading> readings = test::numbered_readings(200);
+  readings[70].time = readings[69].time;  // at one time
+  readings[140].time.mono = readings[130].time.mono;
+  readings[3].direction_deg = 12.5;
+  readings[4].gust_m_s = 7.0;
+  readings[5].quality = wind::ReadingQuality::kUncertain;
+  test::write_session(folder / "one.windlog", readings);
+  for (const Durability durability : {Durability::kEachCommit, Durability::kOnceClosed}) {
+    const auto file = folder / (durability == Durability::kEachCommit ? "many.windlog" : "once.windlog");
+    auto writer = Writer::open(file, durability);
+    ASSERT_TRUE(writer) << writer.error().message;
+    ASSERT_TRUE(writer->begin_session({readings.front().time, "yuragi test", "[wind]\n"}));
+    const auto id = writer->add_sensor("mast", "synthetic", "speed = 5");
+    ASSERT_TRUE(writer->append(*id, std::span(readings).first(1)));
+    ASSERT_TRUE(writer->append(*id, std::span(readings).subspan(1)));
+    ASSERT_TRUE(writer->close());
+    const auto one = test::read_all(folder / "one.windlog");
+    const auto many = test::read_all(file);
+    ASSERT_EQ(many.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) test::expect_same(many[i].reading, one[i].reading);
+    EXPECT_TRUE(verify_recording(file, 60s).value().is_sound());
+  }
+}
+
+TEST(Windlog, TwoSensorsOfOneNameKeepTheirReadingsApart) {
+  const test::TemporaryFolder folder;
+  auto writer = Writer::open(folder / "a.windlog");
+  ASSERT_TRUE(writer);
+  const auto readings = test::numbered_readings(64);
+  ASSERT_TRUE(writer->begin_session({readings.front().time, "yuragi test", ""}));
+  const auto one = writer->add_sensor("mast", "synthetic", "");
+  const auto other = writer->add_sensor("mast", "synthetic", "");
+  ASSERT_TRUE(writer->append(*one, readings));
+  ASSERT_TRUE(writer->append(*other, readings));
+  ASSERT_TRUE(writer->close());
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 128U);
 }
 
 }  // namespace
