@@ -65,9 +65,9 @@ class FieldCommand(unittest.TestCase):
         asked = ("--dims", 3, "--size", 32, "--tile", 32, "--spacing", 2, "--length", 8)
         for stress, told in ((-0.3, ()), (0.5, ("--stress", 0.5)), (-0.6, ("--stress", -0.6)), (0, ("--stress", 0))):
             together = 0.0
-            for seed in range(6):
+            for seed in range(2):  # the mean of two scatters by 0.007
                 values, said = self.field(*asked, *told, "--seed", seed)
-                together += ((values[0, 0].astype(float) - 8) * values[0, 2]).mean() / 6
+                together += ((values[0, 0].astype(float) - 8) * values[0, 2]).mean() / 2
             self.assertEqual(said["wind"]["stress"], stress)
             variance = said["wind"]["variance_m2_s2"]
             scale = math.sqrt(variance["along"] * variance["up"])
@@ -132,11 +132,11 @@ class FieldCommand(unittest.TestCase):
         log = self.folder / "hill.windlog"
         table = log.with_suffix(".csv")
         table.write_text("time_s,speed_m_s,direction_deg\n" +
-                         "".join(f"{i},{6 + math.sin(0.3 * i):.3f},270\n" for i in range(300)), encoding="ascii")
+                         "".join(f"{i},{6 + math.sin(0.3 * i):.3f},270\n" for i in range(145)), encoding="ascii")
         done = subprocess.run([YURAGI, "import", table, "-o", log], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        asked = ("--windlog", log, "--size", "20m", "--frames", 40, "--rate", 1, "--time", 200)
-        values, said = self.field(*asked)
+        asked = ("--windlog", log, "--size", "20m", "--rate", 1, "--time", 100, "--seed", 3)
+        values, said = self.field(*asked, "--frames", 40)
         self.assertEqual(values.shape, (40, 2, 20, 1, 20))
         self.assertEqual(said["wind"]["recording"], "hill.windlog")
         # The wind of the recording everywhere, and each place its own gusts.
@@ -145,21 +145,20 @@ class FieldCommand(unittest.TestCase):
         self.assertGreater(values[0, 0].std(), 0.02)
 
         # In the middle it is what `yuragi wind` says of that place, at the same moments.
-        values, _ = self.field(*asked, "--seed", 3)
         wind = subprocess.run([YURAGI, "wind", log, "-o", "-", "--rate", "50", "--seed", "3", "--place", "0,0",
                                "--scene-size", "20"], capture_output=True, text=True)
         rows = [row.split(",") for row in wind.stdout.splitlines() if row[0].isdigit()]
         for frame in (0, 17, 39):
             # But for waves of 25 Hz and more, which 50 states a second cannot show.
-            row = rows[(200 + frame) * 50]
+            row = rows[(100 + frame) * 50]
             self.assertAlmostEqual(values[frame, 0, 10, 0, 10], float(row[7]), delta=0.01)
             self.assertAlmostEqual(values[frame, 1, 10, 0, 10], float(row[8]), delta=0.01)
-        frozen, _ = self.field(*asked, "--seed", 3, "--frozen")
-        self.assertGreater(abs(frozen - values).max(), 0.01)
+        frozen, _ = self.field(*asked, "--frozen", "--frames", 1)
+        self.assertGreater(abs(frozen[0] - values[0]).max(), 0.01)
 
         done = self.run_field("--windlog", log, "--frames", 500, "--rate", 1, "--size", 4)
         self.assertEqual(done.returncode, 65)
-        self.assertIn("ends after 299.0 s", done.stderr)
+        self.assertIn("ends after 144.0 s", done.stderr)
 
     def test_a_front_of_a_recording_crosses_the_field(self):
         # West wind, 6 m/s; from 200 s on 9 m/s. The windward edge is 28 m west of the middle of a square of 40 m.
@@ -169,14 +168,14 @@ class FieldCommand(unittest.TestCase):
                          "".join(f"{i},{9 if i >= 200 else 6},270\n" for i in range(240)), encoding="ascii")
         done = subprocess.run([YURAGI, "import", table, "-o", log], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        values, said = self.field("--windlog", log, "--size", "40m", "--frames", 200, "--rate", 10, "--time", 195)
+        values, said = self.field("--windlog", log, "--size", "40m", "--frames", 100, "--rate", 5, "--time", 195)
         self.assertEqual((said["x"]["first_m"], said["x"]["step_m"]), (-20.0, 1.0))
         eastward = values[:, 0, :, 0, :].mean(axis=1)
 
         def step_s(speeds):
             # The step that fits best among the gusts of the noise.
-            parts = [(i, speeds[i:].mean() - speeds[:i].mean()) for i in range(10, 190)]
-            return 195 + max(parts, key=lambda part: part[1] ** 2 * part[0] * (200 - part[0]))[0] / 10
+            parts = [(i, speeds[i:].mean() - speeds[:i].mean()) for i in range(5, 95)]
+            return 195 + max(parts, key=lambda part: part[1] ** 2 * part[0] * (100 - part[0]))[0] / 5
 
         arrived_s = [step_s(column) for column in eastward.T]
         # 8 m from the edge to the first column, and 30 m from there to the thirtieth, at 6 m/s and a little more.

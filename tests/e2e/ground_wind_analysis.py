@@ -53,7 +53,11 @@ def high_passed(series):
     """The series less its mean of MEAN_S, weighted by a Hann window."""
     half = MEAN_S * RATE_HZ // 2
     weight = np.hanning(2 * half + 3)[1:-1]
-    return series - np.convolve(np.pad(series, half, mode="reflect"), weight / weight.sum(), "valid")
+    padded = np.pad(series, half, mode="reflect")
+    size = len(padded) + len(weight) - 1
+    size += -size % 4096  # a length of small factors
+    both = np.fft.rfft(padded, size) * np.fft.rfft(weight / weight.sum(), size)
+    return series - np.fft.irfft(both, size)[len(weight) - 1 : len(padded)]
 
 
 def correlations(first, second, window, most_lag):

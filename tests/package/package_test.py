@@ -80,6 +80,13 @@ def make_package(folder):
     return next(folder.glob("*.deb"))
 
 
+def pack(tree):
+    """The package of a tree, beside it."""
+    package = tree.with_suffix(".deb")
+    run("dpkg-deb", "--root-owner-group", "-Zgzip", "-z1", "-b", tree, package)
+    return package
+
+
 def service_group(tree):
     """The number of the service's group in this system."""
     return int(re.search(r"^yuragi:[^:]*:(\d+):", (tree / "etc/group").read_text(encoding="utf-8"), re.MULTILINE)[1])
@@ -99,6 +106,11 @@ class PackageTest(unittest.TestCase):
         cls.contents = cls.folder / "contents"
         run("dpkg-deb", "-R", cls.package, cls.contents)
         cls.version = run("dpkg-deb", "-f", cls.package, "Version").strip()
+        cls.small = cls.folder / "small"  # the same, but its programs are a line: dpkg installs it many times in a moment
+        shutil.copytree(cls.contents, cls.small, symlinks=True)
+        for name in PROGRAMS:
+            (cls.small / "usr/bin" / name).write_text("#!/bin/false\n", encoding="ascii")
+        cls.small_package = pack(cls.small)
 
     def test_two_builds_give_the_same_bytes(self):
         second = make_package(self.folder / "second")
@@ -174,15 +186,14 @@ class PackageTest(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (0, ""))
 
     def other_version(self, name, version, change):
-        """The same package with another version; `change` is called with its tree."""
+        """The small package with another version; `change` is called with its tree."""
         tree = self.folder / name
-        shutil.copytree(self.contents, tree, symlinks=True)
+        shutil.copytree(self.small, tree, symlinks=True)
         control = tree / "DEBIAN/control"
         control.write_text(re.sub(r"^Version: .*$", f"Version: {version}", control.read_text(encoding="utf-8"), flags=re.M),
                            encoding="utf-8")
         change(tree)
-        run("dpkg-deb", "--root-owner-group", "-Zgzip", "-z1", "-b", tree, self.folder / f"{name}.deb")
-        return self.folder / f"{name}.deb"
+        return pack(tree)
 
     def next_version(self):
         """With another example configuration."""
@@ -220,12 +231,12 @@ class PackageTest(unittest.TestCase):
             dpkg("-i", self.old_version() if not edit else self.folder / "old.deb")
             own = (tree / CONFIGURATION).read_text(encoding="utf-8") + edit
             (tree / CONFIGURATION).write_text(own, encoding="utf-8")
-            dpkg("-i", self.package)
+            dpkg("-i", self.small_package)
             self.assertEqual((tree / CONFIGURATION).read_text(encoding="utf-8"), own)
             self.assertEqual(list((tree / CONFIGURATION).parent.iterdir()), [tree / CONFIGURATION])
             self.assertEqual((tree / CONFIGURATION).stat().st_gid, service_group(tree))
             os.chown(tree / CONFIGURATION, -1, 12345)
-            dpkg("-i", self.package)
+            dpkg("-i", self.small_package)
             self.assertEqual((tree / CONFIGURATION).stat().st_gid, 12345, "a person's choice")
             dpkg("-P", "yuragi")
             self.assertFalse((tree / CONFIGURATION).parent.exists())
@@ -233,17 +244,17 @@ class PackageTest(unittest.TestCase):
     @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
     def test_a_configuration_that_is_missing_is_made_again_and_another_is_left(self):
         tree, dpkg = self.new_tree("missing")
-        dpkg("-i", self.package)
+        dpkg("-i", self.small_package)
         made = (tree / CONFIGURATION).read_text(encoding="utf-8")
         self.assertEqual(made, (self.contents / EXAMPLE).read_text(encoding="utf-8"))
         # With it the token's file, which `yuragi token --new` gives to the configuration's group, can be read by the service.
         self.assertEqual((tree / CONFIGURATION).stat().st_gid, service_group(tree))
         (tree / CONFIGURATION).unlink()
         (tree / CONFIGURATION).symlink_to("elsewhere.toml")
-        dpkg("-i", self.package)
+        dpkg("-i", self.small_package)
         self.assertTrue((tree / CONFIGURATION).is_symlink())
         (tree / CONFIGURATION).unlink()
-        dpkg("-i", self.package)
+        dpkg("-i", self.small_package)
         self.assertEqual((tree / CONFIGURATION).read_text(encoding="utf-8"), made)
 
     @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
@@ -253,7 +264,7 @@ class PackageTest(unittest.TestCase):
         def configuration():
             return (tree / CONFIGURATION).read_text(encoding="utf-8")
 
-        dpkg("-i", self.package)
+        dpkg("-i", self.package)  # the programs themselves, once
         self.assertRegex((tree / "etc/passwd").read_text(encoding="utf-8"),
                          r"^yuragi:x:\d+:\d+:Yuragi:/var/lib/yuragi:/usr/sbin/nologin\n")
         self.assertFalse((tree / "etc/systemd").exists(), "it enables something by itself")
@@ -269,7 +280,7 @@ class PackageTest(unittest.TestCase):
         dpkg("-i", self.next_version())
         self.assertEqual(configuration(), own)
         self.assertTrue(link.is_symlink())
-        dpkg("-i", self.package)  # back again
+        dpkg("-i", self.small_package)  # back again
         self.assertEqual(configuration(), own)
         self.assertTrue(link.is_symlink())
         self.assertEqual((tree / RECORDING).read_text(encoding="utf-8"), "months")
@@ -283,7 +294,7 @@ class PackageTest(unittest.TestCase):
         left = {path for path in files_below(tree) if not path.startswith("var/lib/dpkg/")}
         self.assertEqual(left - {f"etc/{name}" for name in ("passwd", "group", "shadow", "gshadow", ".pwd.lock")}, {RECORDING})
 
-        dpkg("-i", self.package)
+        dpkg("-i", self.small_package)
         (tree / RECORDING).unlink()
         dpkg("-P", "yuragi")
         self.assertFalse((tree / RECORDING).parent.exists())
@@ -291,7 +302,7 @@ class PackageTest(unittest.TestCase):
     @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
     def test_a_purge_removes_what_the_programs_made_and_names_where_the_rest_is(self):
         tree, dpkg = self.new_tree("purged")
-        dpkg("-i", self.package)
+        dpkg("-i", self.small_package)
         present = files_below(tree / "etc")
         for path in [*MADE_IN_USE, *OF_A_PERSON]:
             (tree / path).parent.mkdir(parents=True, exist_ok=True)
@@ -305,7 +316,7 @@ class PackageTest(unittest.TestCase):
         self.assertEqual({f"etc/{path}" for path in present - files_below(tree / "etc")}, {CONFIGURATION})
         self.assertEqual([path.name for path in (tree / "var/lib/yuragi").iterdir() if path.name.startswith(".")], [])
 
-        dpkg("-i", self.package)
+        dpkg("-i", self.small_package)
         for path in OF_A_PERSON:
             (tree / path).unlink()
         self.assertNotIn("does not remove", dpkg("-P", "yuragi"))
