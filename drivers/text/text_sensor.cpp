@@ -49,8 +49,15 @@ std::string shown(std::string_view line) {
 
 bool is_text(std::string_view line) noexcept {
   constexpr std::string_view kOthers("\0\x02\x03\t", 4);
-  return std::ranges::all_of(
-      line, [&](char c) { return (c >= ' ' && c <= '~') || kOthers.find(c) != std::string_view::npos; });
+  constexpr char kDegreeSign = '\xB0';  // in Latin-1; in UTF-8 it is the second of two bytes
+  constexpr char kBeforeIt = '\xC2';
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    const bool begins_degree_sign = c == kBeforeIt && i + 1 < line.size() && line[i + 1] == kDegreeSign;
+    if ((c < ' ' || c > '~') && c != kDegreeSign && !begins_degree_sign && kOthers.find(c) == std::string_view::npos)
+      return false;
+  }
+  return true;
 }
 
 sensor::ValueSelection text_selection(const SensorSettings& settings, std::vector<sensor::SelectedPart> own) {

@@ -136,7 +136,7 @@ class Sensor : public sensor::ReopeningSensor {
 /// The beginning of a line for the status, with unprintable characters replaced.
 std::string shown(std::string_view line);
 
-/// Returns true if every byte is one of text, including NUL, STX, ETX and tab.
+/// Returns true if every byte is one of text, including NUL, STX, ETX, tab and the degree sign of UTF-8 and Latin-1.
 bool is_text(std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::text

@@ -612,6 +612,16 @@ def excel_unicode_text():
 
 
 @sample
+def windographer():
+    lines = ["Windographer export", "Latitude = N 52", "Time zone = UTC", "",
+             "Date/Time\tSpeed 50 m [m/s]\tSpeed 50 m SD [m/s]\tSpeed 50 m Max [m/s]\tDirection 50 m [\u00b0]\tTemperature 3 m [\u00b0C]"]
+    for m in moments(40, minutes(10)):
+        lines.append(f"{m.utc:%Y-%m-%d %H:%M}\t{m.speed}\t0.5\t{m.gust}\t{m.direction}\t{m.temperature}")
+    return Sample("Windographer", "\n".join(lines) + "\n",
+                  lambda text: [(moment(r[0], "%Y-%m-%d %H:%M"), float(r[1]), float(r[4]), float(r[3])) for r in table(text, "\t", 5)])
+
+
+@sample
 def french_latin1():
     lines = ["Date;Heure;Vent (km/h);Rafale (km/h);Direction du vent (\u00b0)"]
     for m in moments(40, minutes(10), 3.6):

@@ -123,7 +123,12 @@ Name parse_name(std::string_view text) {
   take_unit(words, name);
   const Statistic before = take_statistic(words);
   if (name.statistic == Statistic::kMean) name.statistic = before;
-  // A height is not part of the name.
+  // A height is not part of the name: "50m", "50 m".
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i + 1] != "m" || !is_all_digits(words[i])) continue;
+    words[i] += words[i + 1];
+    words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+  }
   std::erase_if(words, is_height);
   std::ranges::for_each(words, take_height_off);
   name.stem = joined(words);

@@ -211,6 +211,14 @@ TEST_F(LineSensorTest, ForgetsWhatAnArduinoSaysAsItStarts) {
   EXPECT_EQ(sink.readings.size(), 1U);
 }
 
+TEST(Text, HasTheDegreeSignButNoOtherByteBeyondAscii) {
+  EXPECT_TRUE(is_text("speed=4 direction=270\xC2\xB0"));
+  EXPECT_TRUE(is_text("speed=4 direction=270\xB0"));
+  EXPECT_FALSE(is_text("speed=4\xC2"));
+  EXPECT_FALSE(is_text("speed=4\xFF"));
+  EXPECT_FALSE(is_text("\x01"));
+}
+
 TEST(LineSettings, RefuseWhatCannotWork) {
   const auto refusal = [](ParameterValues::Map given) -> std::string {
     given.try_emplace("device", std::string("/dev/script"));
