@@ -147,7 +147,7 @@ Result<void, Failure> choose_units(Layout& layout, const ImportOptions& options)
   set_by_option(layout, Role::kGust, options.gust_unit, "--gust-unit");
   set_direction_unit(layout, options.direction_unit);
   use_unit_of_fields(layout);
-  if (const auto known = check_unknown_units(layout); !known) return known;
+  if (auto known = check_unknown_units(layout); !known) return known;
   use_weewx_system(layout);
   use_known_writer(layout);
   use_unit_beside(layout, Role::kGust, Role::kSpeed);

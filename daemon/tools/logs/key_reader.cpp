@@ -43,7 +43,7 @@ void add(KeyedLine& line, std::string key, std::string value) {
 void add_members(KeyedLine& line, const nlohmann::json& object, const std::string& path, int depth) {
   constexpr int kMaxDepth = 3;
   for (const auto& [name, value] : object.items()) {
-    const std::string key = path.empty() ? name : path + "." + name;
+    const std::string key = path.empty() ? name : fmt::format("{}.{}", path, name);
     if (value.is_object() && depth < kMaxDepth) add_members(line, value, key, depth + 1);
     if (value.is_number()) add(line, key, json_text(value));
     if (value.is_string()) add(line, key, value.get<std::string>());
