@@ -44,6 +44,7 @@ class LineSensor final : public Sensor {
   Judgement judge(std::string_view line, const Instant& now) override;
   void begin() override;
   std::string name() const override { return "lines of numbers"; }
+  std::string_view driver() const override { return "line"; }
   std::string reported_trouble() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;
 

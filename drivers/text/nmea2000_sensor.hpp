@@ -32,6 +32,7 @@ class Nmea2000Sensor final : public Sensor {
   std::optional<wind::Reading> take_held() override { return wind_.take_held(); }
   void begin() override;
   std::string name() const override;
+  std::string_view driver() const override { return "nmea2000"; }
   std::string reported_trouble() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;
 

@@ -52,6 +52,7 @@ class NmeaSensor final : public Sensor {
   std::optional<wind::Reading> take_held() override { return wind_.take_held(); }
   void begin() override { wind_.restart(); }
   std::string name() const override;
+  std::string_view driver() const override { return "nmea"; }
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
   Result<decode::DecodedWind, decode::Refusal> decode(NmeaFormat format, std::string_view line) const;

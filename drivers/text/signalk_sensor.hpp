@@ -38,6 +38,7 @@ class SignalKSensor final : public Sensor {
   std::optional<wind::Reading> take_held() override;
   void begin() override;
   std::string name() const override;
+  std::string_view driver() const override { return "signalk"; }
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
   /// The values of one source and time, as far as they have come.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "drivers/bus/sender_filter.hpp"
+#include "drivers/text/driver_of_line.hpp"
 #include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::text {
@@ -313,14 +314,19 @@ void Sensor::judge_device(MonoTime now, sensor::Sink& sink) {
   if (const std::string told = reported_trouble(); !told.empty()) return report_unusable(sink, told);
   if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
   const decode::Refusal why = main_refusal();
+  const std::string& line = refused_[static_cast<std::size_t>(why)].first_line;
   const bool has_lines = readable_lines_ + cut_lines_ > 0 && readable_lines_ + cut_lines_ >= garbled_lines_;
   if (late_lines_ > 0 || !has_lines) {
     report_unusable(sink, trouble_without_lines());
   } else if (why == decode::Refusal::kInvalid || why == decode::Refusal::kImplausible) {
     // It is there and sends: whether that is valid is checked elsewhere.
-    report_connected(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
+    report_connected(sink, advice(why, line));
+  } else if (const auto other = driver_of_line(line); other && *other != driver()) {
+    report_unusable(
+        sink, fmt::format("lines arrive from {} that the driver {} reads (the first: \"{}\"): set driver = \"{}\"",
+                          where_, *other, shown(line), *other));
   } else {
-    report_unusable(sink, advice(why, refused_[static_cast<std::size_t>(why)].first_line));
+    report_unusable(sink, advice(why, line));
   }
 }
 

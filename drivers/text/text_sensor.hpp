@@ -59,6 +59,8 @@ class Sensor : public sensor::ReopeningSensor {
   virtual void begin() {}
   /// What the device is, for people.
   virtual std::string name() const = 0;
+  /// The driver of the configuration: "nmea".
+  virtual std::string_view driver() const = 0;
   /// Returns a trouble that the device itself reports, and what to do; empty: none. Reported before the causes that its
   /// silence or its lines suggest.
   virtual std::string reported_trouble() const { return {}; }

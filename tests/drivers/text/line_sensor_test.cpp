@@ -195,6 +195,16 @@ TEST_F(LineSensorTest, ReportsWhatIsWrongWithTheSettingsAndNotWithTheDevice) {
                 HasSubstr("check that the settings match"))
         << line;
   }
+  for (const auto& [line, driver] : std::vector<std::pair<std::string, std::string>>{
+           {"2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,3b,a0,fa,ff,ff", "nmea2000"},
+           {"16:29:27.082 R 09F10D0A FF 00 00 00 FF 7F FF FF", "nmea2000"},
+           {"$WIMWV,214.8,R,4.2,M,A", "nmea"},
+           {"0R1,Dm=066D,Sm=9.5M", "nmea"},
+           {R"({"updates":[{"values":[{"path":"environment.wind.speedApparent","value":4.0}]}]})", "signalk"}}) {
+    EXPECT_THAT(trouble_with(line, {{"speed_column", std::int64_t{20}}, {"direction_column", std::int64_t{21}}}),
+                HasSubstr("that the driver " + driver + " reads"))
+        << line;
+  }
   const std::string trouble = trouble_with("WindDir=79", {{"direction_key", std::string("WindDir")}});
   EXPECT_THAT(trouble, HasSubstr("none with a speed (\"WindDir=79\" has none): check speed_key"));
   EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);

@@ -185,8 +185,9 @@ TEST_F(Nmea2000SensorTest, NamesTheFormatsIfNoneFits) {
   const std::string depth = "2018-02-14T15:55:07.944Z,3,128267,3,255,8,09,44,00,3b,a0,fa,ff,ff\n";
   EXPECT_THAT(detail_after({}, depth), HasSubstr("PGN 130306 is on the bus"));
   EXPECT_GT(sink.count(decode::Refusal::kNotMine), 10);
-  const std::string unknown = detail_after({}, "$WIMWV,230.6,R,3.42,M,A*12\n");
-  EXPECT_THAT(unknown, HasSubstr("in no format of NMEA 2000 that is read (the first: \"$WIMWV,230.6"));
+  EXPECT_THAT(detail_after({}, "$WIMWV,230.6,R,3.42,M,A*12\n"), HasSubstr("set driver = \"nmea\""));
+  const std::string unknown = detail_after({}, "W;230.6;3.42\n");
+  EXPECT_THAT(unknown, HasSubstr("in no format of NMEA 2000 that is read (the first: \"W;230.6"));
   EXPECT_THAT(unknown, HasSubstr("yacht-devices, canboat, candump, canboat-plain, actisense"));
   EXPECT_THAT(unknown, testing::Not(HasSubstr("cable")));
   const std::string other = detail_after({{"format", std::string("yacht-devices")}}, depth);
