@@ -29,14 +29,18 @@ bool is_number_or_date(std::string_view text) {
   return parse_decimal(text, 0).has_value() || has_date(text);
 }
 
-/// "3b", "A0": a byte of a dump, and no word.
-bool is_hexadecimal_byte(std::string_view text) {
-  return text.size() == 2 && text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos &&
-         text.find_first_of("0123456789") != std::string_view::npos;
-}
-
-bool is_data(std::string_view text) {
-  return is_number_or_date(text) || is_hexadecimal_byte(text);
+/// The first field that no header has: a number, a date, or one of several bytes of a dump ("3b A0 FF"; "D1" alone can
+/// be a name). Nullopt: there is none.
+std::optional<std::string_view> data_in(const std::vector<std::string>& fields) {
+  const auto found = std::ranges::find_if(fields, is_number_or_date);
+  if (found != fields.end()) return *found;
+  const auto is_byte = [](std::string_view text) {
+    return text.size() == 2 && text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+  };
+  constexpr std::ptrdiff_t kMinBytes = 4;
+  const auto bytes = std::ranges::count_if(fields, is_byte);
+  if (bytes < kMinBytes || 2 * bytes < static_cast<std::ptrdiff_t>(fields.size())) return std::nullopt;
+  return *std::ranges::find_if(fields, is_byte);
 }
 
 /// A line without its comment sign.
@@ -154,7 +158,7 @@ class LayoutSearch {
 
   Result<Layout, Failure> layout_at(std::size_t i, std::vector<std::string> header, bool is_comment_header) const {
     if (header.empty()) return Failure{"the header has a quote that is not closed"};
-    if (const auto data = std::ranges::find_if(header, is_data); data != header.end()) {
+    if (const auto data = data_in(header)) {
       return Failure{fmt::format("line {} is no header, because it has \"{}\"", i + 1, *data)};
     }
     Layout layout;
@@ -342,7 +346,7 @@ class LayoutSearch {
     std::pair<bool, std::size_t> most{false, 1};
     for (std::size_t i = begin; i < lines_.size(); i = next_line(i + 1, false)) {
       const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[i]));
-      if (std::ranges::any_of(fields, is_data)) continue;
+      if (data_in(fields)) continue;
       const auto names =
           static_cast<std::size_t>(std::ranges::count_if(fields, [](const auto& text) { return !text.empty(); }));
       const std::pair<bool, std::size_t> here{is_above_a_row(i, fields.size()), names};
@@ -365,7 +369,7 @@ class LayoutSearch {
       i = next_line(i + 1, false);
       if (i >= lines_.size()) return false;
       const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[header]));
-      if (std::ranges::any_of(fields, is_data)) return count > 1 && fields.size() == count;
+      if (data_in(fields)) return count > 1 && fields.size() == count;
     }
     return false;
   }

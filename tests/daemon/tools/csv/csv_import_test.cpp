@@ -549,6 +549,9 @@ TEST(CsvImport, ARowOfDataIsNoHeader) {
       "2018-02-14T15:55:07.944Z,2,130306,3,255,8,09,44,00,FF,fa,ff\n"
       "2018-02-14T15:55:08.044Z,2,130306,3,255,8,09,45,00,F,fa,ff\n";
   EXPECT_THAT(import_text(bytes).failure, HasSubstr("no header"));
+  EXPECT_THAT(import_text("FF FA 3b A0 ff\nFF FA 3b A0 ff\n").failure, HasSubstr("no header"));
+  const auto named = import_text("time;D1;F1\n0;90;5\n", with_column(Role::kSpeed, "F1"));
+  EXPECT_EQ(named.readings.size(), 1U) << "names of two letters are no bytes: " << named.failure;
   // The first line that is above a row of its columns is offered.
   const auto preamble = import_text(
       "Site,hill,,,\nLogger,CR1000,serial,12,\nWhen,Spd80mN,Dir78mS,Spare A,Spare B\n"
