@@ -21,7 +21,7 @@ unsigned char byte_at(std::string_view text, std::size_t i) {
 /// Counts the zero bytes at even and at odd places.
 std::array<std::size_t, 2> zeros_of(std::string_view text) {
   std::array<std::size_t, 2> zeros{};
-  for (std::size_t i = 0; i < text.size(); ++i) zeros[i % 2] += text[i] == '\0' ? 1 : 0;
+  for (std::size_t i = 0; i < text.size(); ++i) zeros[i % 2] += text[i] == '\0' ? 1U : 0U;
   return zeros;
 }
 
