@@ -47,6 +47,7 @@ class KestrelSensor final : public Sensor {
     return std::optional(reading);
   }
   std::string name() const override { return "Kestrel"; }
+  std::string_view driver() const override { return "kestrel"; }
 
   double north_offset_deg_;
 };
