@@ -23,10 +23,7 @@ bool is_of_nmea(std::string_view line) {
 }
 
 bool is_of_nmea2000(std::string_view line) {
-  const auto format = decode::marine::bus_line_format_of(line);
-  if (!format) return false;
-  // Other programs print JSON, too.
-  if (format == decode::marine::BusLineFormat::kCanboat && line.find("\"pgn\"") == std::string_view::npos) return false;
+  if (!decode::marine::bus_line_format_of(line)) return false;
   decode::marine::BusLineDecoder decoder({});
   const auto decoded = decoder.decode(line);
   return decoded || (decoded.error() != Refusal::kMalformed && decoded.error() != Refusal::kTooShort);

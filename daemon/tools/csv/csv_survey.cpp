@@ -82,10 +82,9 @@ class SecondsTally {
     is_past_minute_ = is_past_minute_ || whole % kHundred >= kMinutes;
     greatest_ = std::max(greatest_, whole);
     ++count_;
-    if (last_ && *ns < *last_) drops_.push_back(*last_ - *ns);
-    if (last_ && *ns > *last_) steps_.push_back(*ns - *last_);
-    if (drops_.size() > kMaxSteps) drops_.resize(kMaxSteps);
-    if (steps_.size() > kMaxSteps) steps_.resize(kMaxSteps);
+    const double step_ns = static_cast<double>(*ns) - static_cast<double>(last_.value_or(*ns));
+    if (step_ns < 0.0 && drops_.size() < kMaxSteps) drops_.push_back(-step_ns);
+    if (step_ns > 0.0 && steps_.size() < kMaxSteps) steps_.push_back(step_ns);
     last_ = *ns;
   }
 
@@ -95,19 +94,18 @@ class SecondsTally {
     if (steps_.empty()) return "they do not grow";
     const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>(steps_.size() / 2);
     std::ranges::nth_element(steps_, middle);
-    const std::int64_t usual = *middle;
+    const double usual = *middle;
     // A clock that is put right goes back by little, one of hours or of the day begins again.
-    constexpr std::int64_t kManySteps = 5;
+    constexpr double kManySteps = 5.0;
     constexpr std::int64_t kHours = 24;
     constexpr std::ptrdiff_t kOften = 3;
-    const auto beginnings =
-        std::ranges::count_if(drops_, [usual](std::int64_t drop) { return drop > kManySteps * usual; });
+    const auto beginnings = std::ranges::count_if(drops_, [usual](double drop) { return drop > kManySteps * usual; });
     if (beginnings >= kOften || (beginnings > 0 && are_whole_ && greatest_ <= kHours)) return "they begin again";
     constexpr std::int64_t kFirstHour = 100;
     if (are_whole_ && greatest_ >= kFirstHour && !is_past_minute_)
       return "they look like hours and minutes (1359 and then 1400)";
     const auto even =
-        std::ranges::count_if(steps_, [usual](std::int64_t step) { return 2 * step > usual && 2 * step < 3 * usual; });
+        std::ranges::count_if(steps_, [usual](double step) { return step > 0.5 * usual && step < 1.5 * usual; });
     constexpr std::size_t kMinSteps = 10;
     if (steps_.size() < kMinSteps) return std::nullopt;
     constexpr double kEven = 0.8;
@@ -117,8 +115,8 @@ class SecondsTally {
 
  private:
   static constexpr std::size_t kMaxSteps = 10'000;
-  std::vector<std::int64_t> steps_;  ///< forward; the first ones
-  std::vector<std::int64_t> drops_;  ///< back
+  std::vector<double> steps_;  ///< forward; the first ones
+  std::vector<double> drops_;  ///< back
   std::optional<std::int64_t> last_;
   std::int64_t greatest_ = 0;
   std::size_t count_ = 0;

@@ -16,6 +16,7 @@
 #include "drivers/decode/text/umb.hpp"
 #include "drivers/decode/text/wxt.hpp"
 #include "drivers/decode/text_fields.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::tools::logs {
 namespace {
@@ -97,10 +98,6 @@ std::optional<Message> wxt_message(std::string_view line) {
   return std::nullopt;
 }
 
-csv::Time unix_time(std::int64_t time_s) {
-  return {UtcTime(std::chrono::seconds(time_s)), Nanoseconds{0}};
-}
-
 /// A hub's message of any kind has these keys.
 bool is_of_tempest(std::string_view text) {
   return text.find("\"serial_number\"") != std::string_view::npos && text.find("\"type\"") != std::string_view::npos;
@@ -121,7 +118,7 @@ std::optional<Message> MessageFinder::tempest_message(std::string_view text) {
   message.source = "Tempest " + decoded->serial_number;
   if (!decoded->wind || winds.is_wind(*decoded)) message.wind = decoded->wind;
   message.quantities = decoded->quantities;
-  message.time = unix_time(decoded->time_s);
+  message.time = csv::parse_time(std::to_string(decoded->time_s), csv::TimeFormat::kUnix);
   return message;
 }
 
@@ -139,8 +136,8 @@ std::optional<Message> MessageFinder::json_message(std::string_view text) {
     message.quantities = conditions->quantities;
     const auto json = decode::parse_json(text);
     for (const char* const pointer : {"/ts", "/data/ts"}) {
-      const auto time_s = decode::json_number(decode::json_at(json, pointer));
-      if (time_s && *time_s) message.time = unix_time(static_cast<std::int64_t>(**time_s));
+      if (const auto* const time_s = decode::json_at(json, pointer))
+        message.time = csv::parse_time(json_text(*time_s), csv::TimeFormat::kUnix);
     }
     return message;
   }
@@ -168,8 +165,6 @@ std::optional<Message> MessageFinder::json_message(std::string_view text) {
 std::optional<Message> MessageFinder::bus_message(std::string_view line) {
   const auto format = decode::marine::bus_line_format_of(line);
   if (!format) return std::nullopt;
-  if (format == decode::marine::BusLineFormat::kCanboat && line.find("\"pgn\"") == std::string_view::npos)
-    return std::nullopt;
   Message message;
   const auto decoded = bus_.decode(line);
   if (!decoded) {

@@ -78,7 +78,10 @@ BusLineTime time_in(BusLineFormat format, std::string_view line) {
 }  // namespace
 
 std::optional<BusLineFormat> bus_line_format_of(std::string_view line) noexcept {
-  return format_by_look(logged_line(line).line);
+  const auto format = format_by_look(logged_line(line).line);
+  // Other programs print JSON, too.
+  const bool is_of_another = format == BusLineFormat::kCanboat && line.find("\"pgn\"") == line.npos;
+  return is_of_another ? std::nullopt : format;
 }
 
 std::optional<BusLineTime> bus_line_time(std::string_view line) noexcept {

@@ -607,6 +607,8 @@ TEST(CsvImport, NumbersWithoutADateAreSecondsOnlyIfTheyCanBe) {
   EXPECT_THAT(failure("time", {"2018", "2018", "2018", "2018"}), HasSubstr("do not grow"));
   EXPECT_THAT(failure("time", {"1", "2", "9", "40", "41", "60.5", "62", "80", "99", "120", "121", "150"}),
               HasSubstr("uneven"));
+  EXPECT_THAT(failure("time", {"1", "9000000000", "-9000000000", "2", "-9000000000", "3", "-9000000000"}),
+              HasSubstr("no seconds"));
   EXPECT_EQ(failure("time", {"0", "0.1", "0.2", "0.3", "0.4"}), "");
   EXPECT_EQ(failure("time_s", {"1", "2", "9", "40", "41", "200.5"}), "") << "its name states it";
 }

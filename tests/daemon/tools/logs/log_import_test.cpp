@@ -190,6 +190,18 @@ TEST(LogImport, ReadsWhatStationsSendWithTheirTimes) {
   EXPECT_EQ(davis.readings[0].time.utc, kEvening);
 }
 
+TEST(LogImport, ATimeThatNoRecordingCanHaveIsNone) {
+  for (const char* const ts : {"9223372036854775807", "1e300", "-9223372036854775808"}) {
+    const std::string davis = std::string(R"({"did":"1","ts":)") + ts +
+                              R"(,"conditions":[{"data_structure_type":1,"txid":1,"wind_speed_last":10}]})" + "\n";
+    EXPECT_THAT(imported_from(davis).failure, HasSubstr("no time was found")) << ts;
+  }
+  const std::string tempest =
+      R"({"serial_number":"ST-1","type":"rapid_wind","hub_sn":"HB-1","ob":[9000000000000000,2.3,128]})"
+      "\n";
+  EXPECT_TRUE(imported_from(tempest).readings.empty());
+}
+
 TEST(LogImport, ReadsNmea2000WithItsTimes) {
   const auto plain = imported_from(
       "2023-06-25T22:00:00.000Z,2,127250,3,255,8,ff,aa,00,ff,7f,ff,7f,fd\n"
