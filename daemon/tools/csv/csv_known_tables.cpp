@@ -14,13 +14,6 @@
 namespace yuragi::daemon::tools::csv {
 namespace {
 
-std::vector<std::string> fields_of(std::string_view line, char delimiter) {
-  std::string text(line);
-  std::vector<std::string_view> fields;
-  if (!split_csv_line(text, delimiter, fields)) return {};
-  return {fields.begin(), fields.end()};
-}
-
 std::optional<double> number_in(std::string_view text) {
   const auto number = parse_number(text, Dimension::kNone);
   return number ? std::optional(number->value) : std::nullopt;

@@ -108,7 +108,7 @@ class LayoutSearch {
     if (!options_.skip) {
       if (auto known = find_known_table(lines_)) return layout_of_known(*known);
     }
-    auto first = layout_at(begin, split(lines_[begin], delimiter(lines_[begin])), false);
+    auto first = layout_at(begin, fields_of(lines_[begin], delimiter(lines_[begin])), false);
     if (options_.skip || (first && has_fitting_row(*first))) return first;
 
     // In its order: a line, two lines, a comment. The first whose rows do not fit comes last.
@@ -118,7 +118,7 @@ class LayoutSearch {
     };
     if (first) keep(*first);
     for (std::size_t i = next_line(begin + 1, false); i < lines_.size(); i = next_line(i + 1, false)) {
-      auto found = layout_at(i, split(lines_[i], delimiter(lines_[i])), false);
+      auto found = layout_at(i, fields_of(lines_[i], delimiter(lines_[i])), false);
       if (found && has_fitting_row(*found)) return found;
       if (found) keep(std::move(*found));
       auto of_two = layout_of_two(i);
@@ -128,7 +128,7 @@ class LayoutSearch {
       if (!is_comment(lines_[i])) continue;
       const std::string_view text = uncommented(lines_[i], options_.comment);
       if (text.empty()) continue;
-      auto found = layout_at(i, split(text, delimiter(text)), true);
+      auto found = layout_at(i, fields_of(text, delimiter(text)), true);
       if (found && found->row.size() == found->header.size()) return found;
     }
     if (unfitting) return std::move(*unfitting);
@@ -149,13 +149,6 @@ class LayoutSearch {
     return options_.delimiter != 0 ? options_.delimiter : delimiter_of(line);
   }
 
-  static std::vector<std::string> split(std::string_view line, char delimiter) {
-    std::string text(line);
-    std::vector<std::string_view> fields;
-    if (!split_csv_line(text, delimiter, fields)) return {};
-    return {fields.begin(), fields.end()};
-  }
-
   Result<Layout, Failure> layout_at(std::size_t i, std::vector<std::string> header, bool is_comment_header) const {
     if (header.empty()) return Failure{"the header has a quote that is not closed"};
     if (const auto data = data_in(header)) {
@@ -174,8 +167,8 @@ class LayoutSearch {
     for (; next < lines_.size() && unit_rows.size() <= kMaxUnitRows; next = next_line(next + 1, is_comment_header)) {
       const bool is_commented = is_comment(lines_[next]);
       std::vector<std::string> fields =
-          split(is_commented ? uncommented(lines_[next], options_.comment) : std::string_view(lines_[next]),
-                layout.delimiter);
+          fields_of(is_commented ? uncommented(lines_[next], options_.comment) : std::string_view(lines_[next]),
+                    layout.delimiter);
       if (!is_commented && std::ranges::any_of(fields, is_number_or_date)) {
         layout.row = std::move(fields);
         layout.first_row = next + 1;
@@ -201,7 +194,7 @@ class LayoutSearch {
     Layout layout;
     layout.delimiter = delimiter(lines_[begin]);
     layout.header = std::move(names);
-    layout.row = split(lines_[begin], layout.delimiter);
+    layout.row = fields_of(lines_[begin], layout.delimiter);
     layout.first_row = begin + 1;
     layout.may_rows_be_longer = true;
     auto columns = choose_columns(layout.header, options_.columns, layout.row);
@@ -226,7 +219,7 @@ class LayoutSearch {
   void for_first_rows(const Layout& layout, Take take) const {
     for (std::size_t i = layout.first_row - 1; i < lines_.size(); ++i) {
       if (without_blanks(lines_[i]).empty() || is_comment(lines_[i])) continue;
-      if (!take(split(lines_[i], layout.delimiter))) return;
+      if (!take(fields_of(lines_[i], layout.delimiter))) return;
     }
   }
 
@@ -275,8 +268,8 @@ class LayoutSearch {
   std::optional<Layout> layout_of_two(std::size_t i) const {
     if (i == 0 || is_comment(lines_[i - 1])) return std::nullopt;
     const char delimiter_here = delimiter(lines_[i]);
-    const std::vector<std::string> above = split(lines_[i - 1], delimiter_here);
-    std::vector<std::string> names = split(lines_[i], delimiter_here);
+    const std::vector<std::string> above = fields_of(lines_[i - 1], delimiter_here);
+    std::vector<std::string> names = fields_of(lines_[i], delimiter_here);
     if (above.size() != names.size() || std::ranges::any_of(above, is_number_or_date)) return std::nullopt;
     for (std::size_t field = 0; field < names.size(); ++field) {
       names[field] = std::string(without_blanks(above[field] + " " + names[field]));
@@ -316,9 +309,9 @@ class LayoutSearch {
       if (line.empty()) continue;
       // A table of one row: names above values.
       const char delimiter_here = delimiter(line);
-      const std::vector<std::string> names = split(line, delimiter_here);
+      const std::vector<std::string> names = fields_of(line, delimiter_here);
       if (names.size() > 1 && i + 1 < header) {
-        const std::vector<std::string> values = split(lines_[i + 1], delimiter_here);
+        const std::vector<std::string> values = fields_of(lines_[i + 1], delimiter_here);
         for (std::size_t field = 0; field < names.size() && names.size() == values.size(); ++field) {
           read_key(preamble, names[field], values[field]);
         }
@@ -345,7 +338,7 @@ class LayoutSearch {
     std::optional<std::size_t> best;
     std::pair<bool, std::size_t> most{false, 1};
     for (std::size_t i = begin; i < lines_.size(); i = next_line(i + 1, false)) {
-      const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[i]));
+      const std::vector<std::string> fields = fields_of(lines_[i], delimiter(lines_[i]));
       if (data_in(fields)) continue;
       const auto names =
           static_cast<std::size_t>(std::ranges::count_if(fields, [](const auto& text) { return !text.empty(); }));
@@ -357,7 +350,7 @@ class LayoutSearch {
     if (!best) {
       return Failure{first.message + "; if the file has no header, name the columns with --header NAMES"};
     }
-    const auto tried = layout_at(*best, split(lines_[*best], delimiter(lines_[*best])), false);
+    const auto tried = layout_at(*best, fields_of(lines_[*best], delimiter(lines_[*best])), false);
     return tried ? first : tried.error();
   }
 
@@ -368,7 +361,7 @@ class LayoutSearch {
     for (std::size_t between = 0; between <= kMaxBetween; ++between) {
       i = next_line(i + 1, false);
       if (i >= lines_.size()) return false;
-      const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[header]));
+      const std::vector<std::string> fields = fields_of(lines_[i], delimiter(lines_[header]));
       if (data_in(fields)) return count > 1 && fields.size() == count;
     }
     return false;

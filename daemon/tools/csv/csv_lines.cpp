@@ -81,4 +81,11 @@ bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::strin
   return !is_quoted;
 }
 
+std::vector<std::string> fields_of(std::string_view line, char delimiter) {
+  std::string text(line);
+  std::vector<std::string_view> fields;
+  if (!split_csv_line(text, delimiter, fields)) return {};
+  return {fields.begin(), fields.end()};
+}
+
 }  // namespace yuragi::daemon::tools::csv

@@ -4,6 +4,7 @@
 #include <ios>
 #include <iosfwd>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,5 +47,8 @@ class Lines {
 /// spaces around them and without enclosing quotes (RFC 4180: a delimiter within quotes is text, and a quote within
 /// them is doubled). False if a quote is not closed. Works in place: `fields` point into the line.
 bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::string_view>& fields);
+
+/// The same fields as texts of their own; none if a quote is not closed.
+std::vector<std::string> fields_of(std::string_view line, char delimiter);
 
 }  // namespace yuragi::daemon::tools::csv

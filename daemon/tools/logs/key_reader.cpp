@@ -1,7 +1,6 @@
 #include "daemon/tools/logs/key_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -60,21 +59,6 @@ std::optional<KeyedLine> split_json(std::string_view text, std::size_t begin) {
   return line;
 }
 
-std::string percent_decoded(std::string_view text) {
-  std::string plain;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned char byte = 0;
-    const char* const digits = text.data() + i + 1;
-    if (text[i] == '%' && i + 2 < text.size() && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
-      plain += static_cast<char>(byte);
-      i += 2;
-    } else {
-      plain += text[i] == '+' ? ' ' : text[i];
-    }
-  }
-  return plain;
-}
-
 /// "GET /path?a=1&b=2 HTTP/1.1", or "a=1&b=2". What a logger wrote before it is no part of it.
 std::optional<KeyedLine> split_form(std::string_view text) {
   const std::size_t ampersand = text.find('&');
@@ -90,7 +74,8 @@ std::optional<KeyedLine> split_form(std::string_view text) {
     form.remove_prefix(std::min(form.size(), pair.size() + 1));
     const auto sign = pair.find('=');
     if (sign == std::string_view::npos || sign == 0) continue;
-    add(line, percent_decoded(pair.substr(0, sign)), percent_decoded(pair.substr(sign + 1)));
+    add(line, decode::network::percent_decoded(pair.substr(0, sign)),
+        decode::network::percent_decoded(pair.substr(sign + 1)));
   }
   if (line.keys.empty()) return std::nullopt;
   return line;

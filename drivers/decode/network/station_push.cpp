@@ -184,17 +184,6 @@ std::optional<char> byte_of_hex(std::string_view digits) {
   return static_cast<char>(byte);
 }
 
-/// "a+b%20c" as "a b c"; other text is unchanged.
-std::string percent_decoded(std::string_view text) {
-  std::string decoded;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const auto byte = text[at] == '%' ? byte_of_hex(text.substr(at + 1, 2)) : std::nullopt;
-    decoded += byte ? *byte : text[at] == '+' ? ' ' : text[at];
-    if (byte) at += 2;
-  }
-  return decoded;
-}
-
 bool names_a_secret(std::string_view part) {
   std::string words = percent_decoded(part);
   std::ranges::transform(words, words.begin(),
@@ -205,6 +194,16 @@ bool names_a_secret(std::string_view part) {
 }
 
 }  // namespace
+
+std::string percent_decoded(std::string_view text) {
+  std::string decoded;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const auto byte = text[at] == '%' ? byte_of_hex(text.substr(at + 1, 2)) : std::nullopt;
+    decoded += byte ? *byte : text[at] == '+' ? ' ' : text[at];
+    if (byte) at += 2;
+  }
+  return decoded;
+}
 
 PushTarget split_push_target(std::string_view target) noexcept {
   std::size_t path_size = target.find('?');

@@ -72,6 +72,9 @@ PushTarget split_push_target(std::string_view target) noexcept;
 /// wind in it). There is no checksum but TCP's. Thread-safe and realtime-safe: yes.
 Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept;
 
+/// "a+b%20c", a name or value of a form, as "a b c"; other text is unchanged. Thread-safe: yes.
+std::string percent_decoded(std::string_view text);
+
 /// Any bytes as they may be shown and recorded: each part between '&' that mentions a key, a password or a token is
 /// replaced by "(secret)", except the names PASSKEY, PASSWORD and wspw. The rest of a form can be decoded. Thread-safe:
 /// yes.
