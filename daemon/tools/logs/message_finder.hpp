@@ -16,9 +16,7 @@ namespace yuragi::daemon::tools::logs {
 /// What finds messages, for people.
 inline constexpr const char* kMessagesThatAreFound =
     "NMEA 0183, NMEA 2000, Gill, FT, UMB, Vaisala WXT, Tempest, WeatherLink Live, Signal K, and keys in text, JSON or "
-    "what "
-    "stations "
-    "push (\"speed=4.2 direction=270\", wind_avg_m_s, windspeedmph)";
+    "what stations push (\"speed=4.2 direction=270\", wind_avg_m_s, windspeedmph)";
 
 /// Finds and decodes the messages in the lines of a log, in their order. Thread-safe: no.
 class MessageFinder {
