@@ -7,7 +7,6 @@
 
 #include "daemon/tools/logs/log_time.hpp"
 #include "drivers/decode/davis/weatherlink_live.hpp"
-#include "drivers/decode/json_value.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/network/tempest.hpp"
 #include "drivers/decode/text/ft.hpp"
@@ -16,7 +15,6 @@
 #include "drivers/decode/text/umb.hpp"
 #include "drivers/decode/text/wxt.hpp"
 #include "drivers/decode/text_fields.hpp"
-#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::tools::logs {
 namespace {
@@ -134,11 +132,8 @@ std::optional<Message> MessageFinder::json_message(std::string_view text) {
     message.source = "WeatherLink " + conditions->device;
     message.wind = conditions->wind;
     message.quantities = conditions->quantities;
-    const auto json = decode::parse_json(text);
-    for (const char* const pointer : {"/ts", "/data/ts"}) {
-      if (const auto* const time_s = decode::json_at(json, pointer))
-        message.time = csv::parse_time(json_text(*time_s), csv::TimeFormat::kUnix);
-    }
+    if (conditions->time_s)
+      message.time = csv::parse_time(fmt::format("{}", *conditions->time_s), csv::TimeFormat::kUnix);
     return message;
   }
   if (text.find("\"updates\"") != std::string_view::npos) {

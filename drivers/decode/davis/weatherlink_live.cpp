@@ -92,6 +92,7 @@ Result<LiveConditions, Refusal> decode_live_conditions(std::string_view json, in
 
   LiveConditions decoded;
   decoded.device = device->get<std::string>();
+  decoded.time_s = number_at(**data, "ts");
   Refusal refusal = Refusal::kNotMine;
   const Json* station = nullptr;
   for (const Json& record : *conditions) {

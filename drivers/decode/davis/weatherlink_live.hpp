@@ -30,7 +30,8 @@ namespace yuragi::drivers::decode::davis {
 
 /// One message that has conditions.
 struct LiveConditions {
-  std::string device;  ///< "did": which WeatherLink Live it is
+  std::string device;                 ///< "did": which WeatherLink Live it is
+  std::optional<double> time_s = {};  ///< "ts": Unix time by its clock; not checked for its range
   int transmitter = 0;
   DecodedWind wind;                    ///< from north
   wind::StationQuantities quantities;  ///< without its time; not checked for its range (wind::plausible_part)

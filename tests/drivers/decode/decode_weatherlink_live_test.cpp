@@ -42,6 +42,7 @@ TEST(WeatherLinkLiveMessage, ThatWasRecordedGivesItsWind) {
   const auto said = decode_live_conditions(kRecordedBroadcast, 0);
   ASSERT_TRUE(said.has_value());
   EXPECT_EQ(said->device, "001D0A711980");
+  EXPECT_EQ(said->time_s, 1646168724.0);
   EXPECT_EQ(said->transmitter, 1);
   EXPECT_DOUBLE_EQ(*said->wind.speed_m_s, 1.43 * kMphInMetresPerSecond);
   EXPECT_EQ(said->wind.direction_deg, 183.0);
