@@ -72,8 +72,12 @@ list(JOIN YURAGI_WARM_ROOMS "|" YURAGI_WARM_ROOMS)
 
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
 # A library of one folder. LINK lists the rooms and libraries whose headers it includes; tests/architecture holds its sources against it.
+# DESKTOP lists sources that a browser has no use for.
 function(yuragi_room folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DESKTOP;LINK" ${ARGN})
+  if(NOT EMSCRIPTEN)
+    list(APPEND ARG_SOURCES ${ARG_DESKTOP})
+  endif()
   string(REPLACE "/" "_" name "yuragi_${folder}")
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES})

@@ -22,6 +22,7 @@
 #include "viewer/pace/pace_ladder.hpp"
 #include "viewer/pace/quality.hpp"
 #include "viewer/picture/gl_renderer.hpp"
+#include "viewer/picture/headless.hpp"
 #include "viewer/picture/picture_director.hpp"
 #include "viewer/picture/picture_file.hpp"
 #include "viewer/picture/viewer_exit.hpp"

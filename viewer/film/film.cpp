@@ -15,6 +15,7 @@
 #include "engine/base/time.hpp"
 #include "viewer/film/film_progress.hpp"
 #include "viewer/picture/gl_renderer.hpp"
+#include "viewer/picture/headless.hpp"
 #include "viewer/picture/null_renderer.hpp"
 #include "viewer/picture/picture_director.hpp"
 #include "viewer/picture/viewer_exit.hpp"

@@ -1,27 +1,10 @@
 #include "viewer/picture/gl_renderer.hpp"
 
-#include <stdexcept>
 #include <utility>
-
-#include "viewer/picture/viewer_exit.hpp"
 
 namespace yuragi::viewer::picture {
 
-std::unique_ptr<gl::HeadlessContext> make_headless_context() {
-  try {
-#ifdef YURAGI_GL_DEBUG
-    auto context = std::make_unique<gl::HeadlessContext>(gl::HeadlessOptions{.has_messages = true});
-    gl::report_gl_errors();
-    return context;
-#else
-    return std::make_unique<gl::HeadlessContext>();
-#endif
-  } catch (const std::runtime_error& error) {
-    throw ViewerExit(EX_UNAVAILABLE, error.what());
-  }
-}
-
-GlRenderer::GlRenderer(std::unique_ptr<gl::HeadlessContext> context, int width_px, int height_px, int samples)
+GlRenderer::GlRenderer(std::shared_ptr<void> context, int width_px, int height_px, int samples)
     : context_(std::move(context)), samples_(samples), target_(width_px, height_px, samples) {}
 
 void GlRenderer::resize(int width_px, int height_px) {

@@ -5,7 +5,6 @@
 
 #include "viewer/gl/cross_fade.hpp"
 #include "viewer/gl/edge_smoother.hpp"
-#include "viewer/gl/headless_context.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/pace/pace_ladder.hpp"
@@ -13,14 +12,12 @@
 
 namespace yuragi::viewer::picture {
 
-/// Returns a current context that needs no display. Throws ViewerExit (EX_UNAVAILABLE) if there is none.
-std::unique_ptr<gl::HeadlessContext> make_headless_context();
-
 /// Draws by OpenGL into its target: all of each picture, or less if asked to.
 class GlRenderer final : public Renderer {
  public:
-  /// Needs `context`, or, if this is null, a current one that outlives it: a window's.
-  GlRenderer(std::unique_ptr<gl::HeadlessContext> context, int width_px, int height_px, int samples);
+  /// Needs a current context. Keeps `context` for as long as it is needed; null: a window's or a page's, which outlives
+  /// it.
+  GlRenderer(std::shared_ptr<void> context, int width_px, int height_px, int samples);
 
   /// The size of the pictures from the next one on.
   void resize(int width_px, int height_px);
@@ -51,7 +48,7 @@ class GlRenderer final : public Renderer {
   std::vector<std::uint8_t> read_rgb() override { return target_.read_rgb(); }
 
  private:
-  const std::unique_ptr<gl::HeadlessContext> context_;  // the members below need it, or a window's
+  const std::shared_ptr<void> context_;  // the members below need it, or a window's
   const int samples_;
   looks::Stage stage_;
   gl::CrossFade cross_fade_;

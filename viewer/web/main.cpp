@@ -1,0 +1,101 @@
+// What the page calls (daemon/web/wall/wall.ts): C functions, since that is what WebAssembly exports. One picture a page.
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <emscripten/em_macros.h>
+#include <emscripten/heap.h>
+
+#include "viewer/web/wall.hpp"
+
+namespace yuragi::viewer::web {
+namespace {
+
+std::optional<Wall> wall;
+std::string text;  // that was returned last
+
+/// Calls `work`; returns its text, or that of what it throws; null if there is none. Valid until the next call.
+template <class Work>
+const char* text_of(Work&& work) {
+  try {
+    std::optional<std::string> result = work();
+    if (!result) return nullptr;
+    text = std::move(*result);
+  } catch (const std::exception& error) {
+    text = error.what();
+    wall.reset();
+  }
+  return text.c_str();
+}
+
+/// The lines of a text.
+std::vector<std::string> lines_of(std::string_view lines) {
+  std::vector<std::string> all;
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    all.emplace_back(line);
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+  }
+  return all;
+}
+
+}  // namespace
+
+extern "C" {
+
+/// Begins on the current context, and forgets what was there before. `look`: "time=21:00", a line each. Returns null, or
+/// what is wrong with them.
+EMSCRIPTEN_KEEPALIVE const char* wall_open(const char* camera, const char* scene, const char* look, int is_software) {
+  return text_of([&]() -> std::optional<std::string> {
+    wall.reset();
+    picture::ViewerOptions options;
+    options.camera = camera;
+    options.scene = scene;
+    options.look = lines_of(look);
+    if (const auto edited = look::edited({}, options.look); !edited) return edited.error().message;
+    wall.emplace(std::move(options), is_software != 0);
+    return std::nullopt;
+  });
+}
+
+/// Ends it. Its context may be lost.
+EMSCRIPTEN_KEEPALIVE void wall_close() {
+  wall.reset();
+}
+
+/// Takes a message of the stream. Returns null, or why the connection is of no use.
+EMSCRIPTEN_KEEPALIVE const char* wall_take(const std::uint8_t* message, std::size_t size, double now_s) {
+  return text_of([&]() -> std::optional<std::string> {
+    if (!wall) return std::nullopt;
+    return wall->take({message, size}, now_s);
+  });
+}
+
+/// Draws a picture if it is time for one. Returns null, or what failed; then there is no wall any more.
+EMSCRIPTEN_KEEPALIVE const char* wall_draw(double now_s, int width_px, int height_px) {
+  return text_of([&]() -> std::optional<std::string> {
+    if (wall) wall->draw(now_s, width_px, height_px);
+    return std::nullopt;
+  });
+}
+
+EMSCRIPTEN_KEEPALIVE int wall_is_drawing(double now_s) {
+  return wall && wall->is_drawing(now_s) ? 1 : 0;
+}
+
+EMSCRIPTEN_KEEPALIVE double wall_pictures() {
+  return wall ? static_cast<double>(wall->pictures()) : 0.0;
+}
+
+/// How the last picture was drawn.
+EMSCRIPTEN_KEEPALIVE const char* wall_pace() {
+  return text_of([]() -> std::optional<std::string> { return wall ? wall->pace_text() : std::string(); });
+}
+
+}  // extern "C"
+
+}  // namespace yuragi::viewer::web
