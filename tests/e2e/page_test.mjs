@@ -221,6 +221,61 @@ test("one button hides all scenes, and shows them again", { timeout: 2 * HANG_MS
   await page.context().close();
 });
 
+/** The sentence of a live sensor in each language, and the texts of ours that are the same as in English. */
+const LANGUAGES = [
+  { locale: "en-GB", live: LIVE, same: [] },
+  { locale: "de-AT", live: /^Live: roof, (\d+,\d m\/s aus [A-Z][a-zü]+|windstill), vor \d+(,\d)? s$/, same: ["Wind", "Code", "in 2 s", "in 10 s"] },
+  { locale: "fr-FR", live: /^En direct\u00a0: roof, (\d+,\d m\/s (du|de l’)\s?[a-z-]+|calme), il y a \d+(,\d)? s$/, same: ["Code"] },
+  { locale: "ja-JP", live: /^実測中：roof、([東西南北]+の風 \d+\.\d m\/s|無風)、\d+(\.\d)? 秒前$/, same: [] },
+];
+/** Texts of ours that do not change while the page is open. */
+const ownTexts = (page) => page.evaluate(() => [
+  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
+  ...[...document.querySelectorAll("[data-label], .trace")].map((one) => one.ariaLabel),
+]);
+const isWider = (page, width) => page.evaluate((width) => document.documentElement.scrollWidth > width, width);
+
+test("in each language that the browser asks for, on a phone", { timeout: 4 * HANG_MS }, async () => {
+  let english;
+  for (const { locale, live, same } of LANGUAGES) {
+    const page = await open(url, { locale, viewport: { width: 390, height: 844 } });
+    await waitForSentence(page, live);
+    await page.waitForSelector("#scenes [role=switch]");
+    await page.waitForSelector(".trace canvas");
+    assert.equal(await page.getAttribute("html", "lang"), locale.slice(0, 2));
+    assert.equal(await page.inputValue("#language"), locale.slice(0, 2));
+    const own = await ownTexts(page);
+    assert.ok(own.length > 40 && own.every((text) => text !== ""), "texts are missing: " + own);
+    english ??= own;
+    if (english !== own) assert.deepEqual(own.filter((text, i) => text === english[i] && !same.includes(text)), [], locale);
+    await page.click("#log summary");
+    await page.waitForSelector("#log-lines li");
+    assert.equal(await isWider(page, 390), false, locale);
+    await assertAccessible(page, locale);
+    await screenshot(page, `language-${locale}-390`);
+    await page.evaluate(() => document.getElementById("pairing").showModal());
+    assert.equal(await isWider(page, 390), false, locale);
+    await assertAccessible(page, "pairing, " + locale);
+    await page.screenshot({ path: path.join(screenshots, `language-${locale}-390-pairing.png`) });
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  }
+});
+
+test("another language is chosen, and kept", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url, { locale: "pt-BR" }); // has no texts: English
+  await waitForSentence(page, LIVE);
+  await page.selectOption("#language", "de");
+  await waitForSentence(page, LANGUAGES[1].live);
+  assert.equal(await page.evaluate(() => document.activeElement.id), "language");
+  const again = await page.context().newPage();
+  await again.goto(url);
+  await waitForSentence(again, LANGUAGES[1].live);
+  assert.equal(await again.evaluate(() => document.activeElement.id), "");
+  assert.equal(await again.getAttribute("html", "lang"), "de");
+  await page.context().close();
+});
+
 test("motion is left out for whoever wants none", { timeout: 2 * HANG_MS }, async () => {
   for (const [reducedMotion, duration] of [["reduce", "0s"], ["no-preference", "0.4s"]]) {
     const page = await open(url, { reducedMotion });

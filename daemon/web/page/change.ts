@@ -1,7 +1,8 @@
 // Changes something: sends the request, pairs the browser if needed, and shows the result.
-import { by_id, set_text } from "./element";
+import { by_id, set_text, set_text_in } from "./element";
 import { Pairing } from "./pairing";
 import { ask, Refused } from "./request";
+import { DAEMON_LANGUAGE, language, texts } from "./texts";
 
 const TOLD_FOR_MS = 6000;
 
@@ -17,17 +18,19 @@ export class Change {
     } catch (error) {
       if (error instanceof Refused && error.status === 401) {
         if (await this.pairing.open(error.message)) return this.make<T>(path, body);
+      } else if (error instanceof Refused) {
+        this.tell(DAEMON_LANGUAGE, error.message);
       } else {
-        this.tell(error instanceof Refused ? error.message : "Not done: the daemon does not reply.");
+        this.tell(language, texts.not_done_no_reply);
       }
       return undefined;
     }
   }
 
-  private tell(text: string): void {
+  private tell(lang: string, text: string): void {
     const toast = by_id("toast");
-    set_text(by_id("alert"), text);
-    set_text(toast, text);
+    set_text_in(lang, by_id("alert"), text);
+    set_text_in(lang, toast, text);
     toast.hidden = false;
     clearTimeout(this.hide);
     this.hide = setTimeout(() => {

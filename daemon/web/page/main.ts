@@ -12,11 +12,15 @@ import { ScenesView } from "./scenes_view";
 import { Knowledge, verdict_of } from "./sentence";
 import { SensorsView } from "./sensors_view";
 import { Player, Scene, Status } from "./status";
+import { DAEMON_LANGUAGE, fill_in_texts, offer_languages, texts } from "./texts";
 import { WindView } from "./wind_view";
 
 const REDRAW_EVERY_MS = 200;
 const ASK_FOR_LISTS_EVERY_MS = 2000;
 const NEWS_ARE_OLD_AFTER_S = 3;
+
+fill_in_texts();
+offer_languages(by_id("language") as HTMLSelectElement);
 
 const pairing = new Pairing();
 const change = new Change(pairing);
@@ -38,9 +42,9 @@ const since_s = () => (performance.now() - heard_ms) / 1000;
 function show_attention(items: string[]): void {
   const list = by_id("attention");
   const text = items.join("\n");
-  if (list.dataset["text"] === text) return;
-  list.dataset["text"] = text;
-  list.replaceChildren(...items.map((item) => element("li", {}, item)));
+  if (list.dataset["items"] === text) return;
+  list.dataset["items"] = text;
+  list.replaceChildren(...items.map((item) => element("li", { lang: DAEMON_LANGUAGE }, item)));
   list.hidden = items.length === 0;
 }
 
@@ -50,7 +54,7 @@ function show_verdict(): void {
   set_text(by_id("sentence"), verdict.text);
   set_text(by_id("announcement"), verdict.announcement);
   by_id("unpaired").hidden = !(knowledge.kind === "refused" && knowledge.needs_pairing);
-  const title = { live: "Live", attention: "Live, with faults", other: "Not live", lost: "No connection" }[verdict.light];
+  const title = texts.titles[verdict.light];
   if (document.title !== `${title} – Yuragi`) document.title = `${title} – Yuragi`;
 }
 
