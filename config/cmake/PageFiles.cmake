@@ -5,7 +5,10 @@ set(files
   "/page.js|text/javascript|page.js"
   "/page.css|text/css|page.css"
   "/icon.svg|image/svg+xml|icon.svg"
-  "/manifest.webmanifest|application/manifest+json|manifest.webmanifest")
+  "/manifest.webmanifest|application/manifest+json|manifest.webmanifest"
+  "/wall|text/html|wall.html"
+  "/wall.js|text/javascript|wall.js"
+  "/wall.css|text/css|wall.css")
 
 set(table "")
 foreach(line IN LISTS files)

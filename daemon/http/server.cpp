@@ -117,6 +117,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .authorization = field(beast_http::field::authorization),
         .cookie = field(beast_http::field::cookie),
         .if_none_match = field(beast_http::field::if_none_match),
+        .accept_encoding = field(beast_http::field::accept_encoding),
         .body = message.body(),
         .forwarded_for = text_of(message["X-Forwarded-For"]),
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,

@@ -30,6 +30,7 @@ struct Request {
   std::string authorization = {};
   std::string cookie = {};
   std::string if_none_match = {};
+  std::string accept_encoding = {};
   std::string body = {};
   std::string forwarded_for = {};  ///< X-Forwarded-For: for whom a proxy sends it
   bool is_forwarded = false;       ///< a proxy states that it sends it for another client

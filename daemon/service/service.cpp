@@ -44,7 +44,7 @@
 #include "daemon/state/attention.hpp"
 #include "daemon/stream/tcp_stream.hpp"
 #include "daemon/web/access.hpp"
-#include "daemon/web/guide.hpp"
+#include "daemon/web/installed_files.hpp"
 #include "daemon/web/web_server.hpp"
 #include "engine/base/address.hpp"
 #include "engine/base/contain.hpp"
@@ -254,7 +254,8 @@ class Service::Io {
                            .proxies = http_.proxies,
                            .origins = http_.origins,
                            .folder = http_.folder,
-                           .guide = web::installed_guide(),
+                           .guide = web::installed_folder("guide"),
+                           .viewer = web::installed_folder("wall"),
                            .software = with_version("yuragi"),
                            .tick_rate_hz = rate_hz_};
     settings.hosts.push_back(asio::ip::host_name());

@@ -20,8 +20,8 @@ std::span<const PageFile> page_files();
 
 /// Returns the answer for a file of the daemon's own pages, still without its text. A browser keeps it but asks for it
 /// again each time, and may load for it only the daemon's own files and answers, and no script or style within a page's
-/// text (W3C, Content Security Policy Level 3).
-http::Response page_response(std::string_view content_type);
+/// text (W3C, Content Security Policy Level 3). `runs_wasm`: it may also compile WebAssembly, as the picture does.
+http::Response page_response(std::string_view content_type, bool runs_wasm = false);
 
 /// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nullopt: it asks for
 /// something else. The files are the same for everybody and hold no secret. Pure.

@@ -15,7 +15,7 @@
 #include "daemon/http/server.hpp"
 #include "daemon/stream/client_log.hpp"
 #include "daemon/web/cross_origin.hpp"
-#include "daemon/web/guide.hpp"
+#include "daemon/web/installed_files.hpp"
 #include "daemon/web/page.hpp"
 #include "daemon/web/pairings_file.hpp"
 #include "daemon/web/permission.hpp"
@@ -109,7 +109,11 @@ class Server::Thread {
  public:
   explicit Thread(Settings settings)
       : settings_(std::move(settings)),
-        guide_(settings_.guide.empty() ? Guide() : Guide(settings_.guide)),
+        guide_({.path = "/guide/", .what = "the guide", .remedy = "read config/guide in the sources"}, settings_.guide),
+        viewer_({.path = "/wall/",
+                 .what = "the viewer for browsers",
+                 .remedy = "config/package.sh builds it where emscripten is installed"},
+                settings_.viewer),
         pairings_file_(settings_.pairings_file),
         site_(settings_.folder),
         sockets_(*io_, {.limits = settings_.sockets,
@@ -227,7 +231,9 @@ class Server::Thread {
     if (auto refusal = method_refusal(request)) return reply(std::move(*refusal));
     // Before who asks is looked at: those who are to be paired need it.
     if (auto page = page_answer(request)) return reply(std::move(*page));
-    if (auto page = guide_.answer(request)) return reply(std::move(*page));
+    for (const InstalledFiles* const files : {&guide_, &viewer_}) {
+      if (auto file = files->answer(request)) return reply(std::move(*file));
+    }
     const bool only_reads = request.method == "GET" || request.method == "HEAD";
     if (!only_reads && !is_same_origin(request.origin, request.host))
       return reply(problem(403, "Another page's request", "only pages of this daemon may change something"));
@@ -415,7 +421,7 @@ class Server::Thread {
   }
 
   Settings settings_;
-  Guide guide_;
+  InstalledFiles guide_, viewer_;
   PairingsFile pairings_file_;
   std::optional<Access> access_;  ///< of the thread, as all below
   Pairings pairings_;             ///< of the token

@@ -35,8 +35,9 @@ struct Settings {
   std::filesystem::path folder = {};      ///< served at /site/ (Site); empty: none
   stream::AdmissionLimits clients = {};
   SocketLimits sockets = {};
-  std::filesystem::path guide = {};  ///< the folder of the guide as HTML, read by the constructor; empty: none
-  std::string software = {};         ///< "yuragi 0.2.0"
+  /// The folders of the guide as HTML and of the viewer as WebAssembly, read by the constructor.
+  std::filesystem::path guide = {}, viewer = {};
+  std::string software = {};  ///< "yuragi 0.2.0"
   double tick_rate_hz = 0.0;
   /// Carries out a client's request and calls `reply` once, on any thread. Called on the web server's own; must not
   /// wait. `is_local`: the client is of this machine, or trusted as if it were. Empty: every request is refused.

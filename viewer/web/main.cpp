@@ -1,4 +1,5 @@
-// What the page calls (daemon/web/wall/wall.ts): C functions, since that is what WebAssembly exports. One picture a page.
+// What the page calls (daemon/web/wall/wall.ts): C functions, since that is what WebAssembly exports. One picture a
+// page.
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -47,8 +48,8 @@ std::vector<std::string> lines_of(std::string_view lines) {
 
 extern "C" {
 
-/// Begins on the current context, and forgets what was there before. `look`: "time=21:00", a line each. Returns null, or
-/// what is wrong with them.
+/// Begins on the current context, and forgets what was there before. `look`: "time=21:00", a line each. Returns null,
+/// or what is wrong with them.
 EMSCRIPTEN_KEEPALIVE const char* wall_open(const char* camera, const char* scene, const char* look, int is_software) {
   return text_of([&]() -> std::optional<std::string> {
     wall.reset();

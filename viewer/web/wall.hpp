@@ -14,8 +14,8 @@
 namespace yuragi::viewer::web {
 
 /// What a page shows, without a window or a connection of its own: the page hands in messages and asks for pictures.
-/// Needs a current context, whose framebuffer 0 is the page's canvas. Times are seconds of one clock that only advances.
-/// Thread-safe: no; a page has one thread.
+/// Needs a current context, whose framebuffer 0 is the page's canvas. Times are seconds of one clock that only
+/// advances. Thread-safe: no; a page has one thread.
 class Wall {
  public:
   /// `options`: scene, camera and look, as on the command line; a width and a height that the first picture can have.
@@ -24,9 +24,9 @@ class Wall {
   Wall(const Wall&) = delete;
   Wall& operator=(const Wall&) = delete;
 
-  /// Takes a message of the stream, without its size, that has just arrived. Returns what is wrong with it, for a person:
-  /// then the connection is of no use; nullopt if nothing is. Throws ViewerExit if the first scenes or cameras do not
-  /// include those of the options.
+  /// Takes a message of the stream, without its size, that has just arrived. Returns what is wrong with it, for a
+  /// person: then the connection is of no use; nullopt if nothing is. Throws ViewerExit if the first scenes or cameras
+  /// do not include those of the options.
   std::optional<std::string> take(std::span<const std::uint8_t> message, double now_s);
 
   /// Draws a picture of this size into framebuffer 0, if there is something to show, the one before it is complete, and
@@ -57,9 +57,9 @@ class Wall {
 
   // Of the last picture.
   std::optional<double> begun_s_;
-  std::optional<GLsync> drawing_;   // until it is complete
-  std::optional<double> work_s_;    // then, if it was a usual one
-  bool is_usual_ = false;           // no shader was compiled for it
+  std::optional<GLsync> drawing_;  // until it is complete
+  std::optional<double> work_s_;   // then, if it was a usual one
+  bool is_usual_ = false;          // no shader was compiled for it
 };
 
 }  // namespace yuragi::viewer::web

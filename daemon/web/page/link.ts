@@ -4,6 +4,7 @@ import { Status } from "./status";
 
 const ASK_EVERY_MS = 500;
 const TRY_AGAIN_AFTER_MS = 500;
+const USELESS_FOR_MS = 2000; // of a stream for which there was no use
 const SILENCE_MS = 2500; // of a WebSocket that sends twice a second
 
 export interface Listener {
@@ -12,6 +13,20 @@ export interface Listener {
   refused(refusal: Refused): void;
   /** It does not answer. */
   lost(): void;
+}
+
+/** The stream of poses that is wanted beside the state: /ws of the guide describes it. */
+export interface StreamWish {
+  scenes?: string[];
+  every: number;
+  rate: number;
+}
+export interface Stream {
+  wish: StreamWish;
+  /** Before each connection. Returns false if there is no use for it now. */
+  begin(): Promise<boolean>;
+  /** Takes a message. Returns false if the connection is of no use. */
+  take(message: ArrayBuffer): boolean;
 }
 
 const after = (time_ms: number) => new Promise((resolve) => setTimeout(resolve, time_ms));
@@ -23,22 +38,29 @@ async function has_web_socket(): Promise<boolean> {
 }
 
 /** Receives from the WebSocket until it ends. Returns false if nothing came: there was no place, or a proxy lets none through. */
-function hear(listener: Listener): Promise<boolean> {
+function hear(listener: Listener, stream?: Stream): Promise<boolean> {
   return new Promise((resolve) => {
     let has_heard = false;
     const socket = new WebSocket((location.protocol === "https:" ? "wss://" : "ws://") + location.host + "/ws");
+    socket.binaryType = "arraybuffer";
     const end = () => {
+      document.removeEventListener("visibilitychange", rest);
       socket.onclose = socket.onmessage = null;
       socket.close();
       resolve(has_heard);
     };
+    const rest = () => {
+      if (stream && document.hidden) end();
+    };
+    document.addEventListener("visibilitychange", rest);
     let silence = setTimeout(end, SILENCE_MS);
-    socket.onopen = () => socket.send(JSON.stringify({ status: 2 }));
+    socket.onopen = () => socket.send(JSON.stringify({ status: 2, ...(stream && { stream: stream.wish }) }));
     socket.onclose = () => {
       clearTimeout(silence);
       end();
     };
     socket.onmessage = (message) => {
+      if (message.data instanceof ArrayBuffer && stream?.take(message.data) === false) end();
       if (typeof message.data !== "string") return;
       clearTimeout(silence);
       silence = setTimeout(end, SILENCE_MS);
@@ -50,13 +72,27 @@ function hear(listener: Listener): Promise<boolean> {
   });
 }
 
-/** Never ends. Each failure is reported at once. */
-export async function listen(listener: Listener): Promise<never> {
+/** While the page is visible. */
+const sight = () => new Promise<void>((resolve) => {
+  const look = () => {
+    if (document.hidden) return;
+    document.removeEventListener("visibilitychange", look);
+    resolve();
+  };
+  document.addEventListener("visibilitychange", look);
+  look();
+});
+
+/** Never ends. Each failure is reported at once. With a stream it rests while the page is hidden. */
+export async function listen(listener: Listener, stream?: Stream): Promise<never> {
   for (;;) {
+    if (stream) await sight();
     try {
       listener.news(await ask<Status>("/api/v1/status"));
-      if ((await has_web_socket()) && (await hear(listener))) listener.lost();
-      for (;;) {
+      const is_ready = stream === undefined || (await stream.begin());
+      if (is_ready && (await has_web_socket()) && (await hear(listener, stream))) listener.lost();
+      if (stream) await after(is_ready ? 0 : USELESS_FOR_MS);
+      while (!stream) {
         await after(ASK_EVERY_MS);
         listener.news(await ask<Status>("/api/v1/status"));
       }

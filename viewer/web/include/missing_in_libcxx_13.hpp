@@ -1,6 +1,6 @@
 #pragma once
-// What the standard library of emscripten 3.1.6, libc++ 13, lacks of C++20, as far as the rooms need it that a browser runs. Every
-// source includes this first. It goes when Debian's emscripten has libc++ 16.
+// What the standard library of emscripten 3.1.6, libc++ 13, lacks of C++20, as far as the rooms need it that a browser
+// runs. Every source includes this first. It goes when Debian's emscripten has libc++ 16.
 #ifdef __cplusplus
 #include <algorithm>
 #include <charconv>
@@ -32,7 +32,8 @@ constexpr auto find_if(R&& range, F is, P part = {}) {
 }
 template <class R, class T, class P = kept_as_it_is>
 constexpr auto find(R&& range, const T& value, P part = {}) {
-  return ranges::find_if(range, [&](auto&& each) { return each == value; }, part);
+  return ranges::find_if(
+      range, [&](auto&& each) { return each == value; }, part);
 }
 template <class R, class F, class P = kept_as_it_is>
 constexpr bool any_of(R&& range, F is, P part = {}) {
@@ -44,7 +45,8 @@ constexpr bool none_of(R&& range, F is, P part = {}) {
 }
 template <class R, class F, class P = kept_as_it_is>
 constexpr bool all_of(R&& range, F is, P part = {}) {
-  return ranges::none_of(range, [&](auto&& each) { return !std::invoke(is, each); }, part);
+  return ranges::none_of(
+      range, [&](auto&& each) { return !std::invoke(is, each); }, part);
 }
 template <class R, class T, class P = kept_as_it_is>
 constexpr auto count(R&& range, const T& value, P part = {}) {

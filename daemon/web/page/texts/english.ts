@@ -138,4 +138,10 @@ export const english = {
   pair: "Pair",
   no_reply: "The daemon does not reply.",
   not_done_no_reply: "Not done: the daemon does not reply.",
+
+  // The picture alone, at /wall.
+  wall_picture: "The scenes in the wind",
+  wall_no_program: "The picture is not installed on the daemon’s machine: `config/package.sh` builds it where emscripten is",
+  wall_no_webgl: "This browser cannot draw the picture: it has no WebGL 2, or not all that it takes",
+  wall_lost_context: "The graphics card was reset; the picture comes back",
 };

@@ -130,4 +130,10 @@ export const french: Texts = {
   pair: "Associer",
   no_reply: "Le démon ne répond pas.",
   not_done_no_reply: "Non fait : le démon ne répond pas.",
+
+  // The picture alone, at /wall.
+  wall_picture: "Les scènes dans le vent",
+  wall_no_program: "L’image n’est pas installée sur la machine du démon : `config/package.sh` la construit là où se trouve emscripten",
+  wall_no_webgl: "Ce navigateur ne peut pas dessiner l’image : il lui manque WebGL 2 ou une partie",
+  wall_lost_context: "La carte graphique a été réinitialisée ; l’image revient",
 };

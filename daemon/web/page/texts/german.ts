@@ -129,4 +129,10 @@ export const german: Texts = {
   pair: "Koppeln",
   no_reply: "Der Daemon antwortet nicht.",
   not_done_no_reply: "Nicht ausgeführt: der Daemon antwortet nicht.",
+
+  // The picture alone, at /wall.
+  wall_picture: "Die Szenen im Wind",
+  wall_no_program: "Das Bild ist auf der Maschine des Daemons nicht installiert: `config/package.sh` baut es, wo emscripten ist",
+  wall_no_webgl: "Dieser Browser kann das Bild nicht zeichnen: ihm fehlt WebGL 2 oder ein Teil davon",
+  wall_lost_context: "Die Grafikkarte wurde zurückgesetzt; das Bild kommt wieder",
 };

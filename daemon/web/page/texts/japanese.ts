@@ -129,4 +129,10 @@ export const japanese: Texts = {
   pair: "ペアリング",
   no_reply: "デーモンが応答しません。",
   not_done_no_reply: "実行されませんでした：デーモンが応答しません。",
+
+  // The picture alone, at /wall.
+  wall_picture: "風の中のシーン",
+  wall_no_program: "デーモンの機械に映像がインストールされていません。emscripten があれば `config/package.sh` で作成できます",
+  wall_no_webgl: "このブラウザーでは映像を描けません。WebGL 2、またはその一部がありません",
+  wall_lost_context: "グラフィックカードがリセットされました。映像はまもなく戻ります",
 };
