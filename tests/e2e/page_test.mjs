@@ -221,6 +221,132 @@ test("one button hides all scenes, and shows them again", { timeout: 2 * HANG_MS
   await page.context().close();
 });
 
+/** The sentence of a live sensor in each language, and the texts of ours that are the same as in English. */
+const LANGUAGES = [
+  { locale: "en-GB", live: LIVE, same: [] },
+  { locale: "de-AT", live: /^Live: roof, (\d+,\d m\/s aus [A-Z][a-zü]+|windstill), vor \d+(,\d)? s$/, same: ["Wind", "Code", "in 2 s", "in 10 s"] },
+  { locale: "fr-FR", live: /^En direct\u00a0: roof, (\d+,\d m\/s (du|de l’)\s?[a-z-]+|calme), il y a \d+(,\d)? s$/, same: ["Code"] },
+  { locale: "ja-JP", live: /^実測中：roof、([東西南北]+の風 \d+\.\d m\/s|無風)、\d+(\.\d)? 秒前$/, same: [] },
+];
+/** Texts of ours that do not change while the page is open. */
+const ownTexts = (page) => page.evaluate(() => [
+  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
+  ...[...document.querySelectorAll("[data-label], .trace")].map((one) => one.ariaLabel),
+]);
+const isWider = (page, width) => page.evaluate((width) => document.documentElement.scrollWidth > width, width);
+
+/** Opens the card with the values of [look], and of the first scene. */
+async function openLook(page) {
+  await page.click("#look > summary");
+  await page.click("#look .group:nth-child(1) summary");
+  await page.click("#look .group:nth-child(2) summary");
+  await page.waitForSelector("#look fieldset:enabled");
+}
+/** The value that the daemon has; without a scene: of [look]. */
+async function parameterOf(name, scene = "") {
+  const { parameters } = await (await fetch(url + "api/v1/parameters")).json();
+  return parameters.find((group) => group.scene === scene).parameters.find((parameter) => parameter.name === name).value;
+}
+const isSent = (page) => page.waitForResponse((response) => response.request().method() === "POST");
+
+test("the keyboard moves a slider of the look, and undo gives its value before back", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await openLook(page);
+  const clouds = page.getByRole("slider", { name: "clouds" });
+  const waitForClouds = (text) => page.waitForSelector(`.parameter:has(label:text-is("clouds")) output:text-is("${text}")`);
+  await waitForClouds("0.3");
+  await clouds.focus();
+  const sent = isSent(page);
+  await page.keyboard.press("ArrowRight");
+  await sent;
+  await waitForClouds("0.305");
+  assert.equal(await parameterOf("clouds"), 0.305);
+  assert.equal(await clouds.getAttribute("aria-valuetext"), "0.305");
+  const undone = isSent(page);
+  await page.getByRole("button", { name: "Undo: clouds" }).click();
+  await undone;
+  await waitForClouds("0.3");
+  assert.equal(await parameterOf("clouds"), 0.3);
+  assert.ok(await page.getByRole("button", { name: "Undo" }).isDisabled());
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a select, a field and a switch set values; those of others appear; one that is refused goes back with its reason", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await openLook(page);
+  const answered = async (act) => (await Promise.all([isSent(page), act()]))[0].status();
+  const palette = page.getByLabel("palette");
+  assert.equal(await answered(() => palette.selectOption("autumn")), 200);
+  assert.equal(await parameterOf("palette"), "autumn");
+  const x = page.locator("#look .group:nth-child(2)").getByLabel("x (m)", { exact: true });
+  const setX = async (value) => {
+    await x.fill(value);
+    await x.press("Enter");
+  };
+  assert.equal(await answered(() => setX("2.5")), 200);
+  assert.equal(await parameterOf("x", "meadow"), 2.5);
+  assert.equal(await answered(() => setX("5000")), 409);
+  await page.waitForSelector(`.parameter:has(label:text-is("x (m)")) .error:text("is 5000; allowed: number from -1000 to 1000")`);
+  await page.waitForFunction((x) => x.value === "2.5", await x.elementHandle());
+  assert.equal(await parameterOf("x", "meadow"), 2.5);
+  await assertAccessible(page, "look");
+  await screenshot(page, "look-1920-light");
+  assert.equal(await answered(() => page.locator("#look .group:nth-child(2)").getByRole("switch", { name: "shown" }).click()), 200);
+  assert.equal(await parameterOf("shown", "meadow"), false);
+  for (const name of ["shown", "x", "palette"]) assert.equal(await answered(() => page.getByRole("button", { name: "Undo: " + name }).click()), 200);
+  assert.deepEqual([await parameterOf("shown", "meadow"), await parameterOf("x", "meadow"), await parameterOf("palette")], [true, 0, "meadow"]);
+  const set = (body) => fetch(url + "api/v1/parameters", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+  assert.ok((await set({ set: { haze: 0.61 } })).ok);
+  await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.61")`);
+  assert.ok((await set({ reset: ["haze"] })).ok);
+  await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.15")`);
+  assert.ok(page.complaints.every((complaint) => complaint.includes("409")), page.complaints.join()); // the browser reports the refusal
+  await page.context().close();
+});
+
+test("in each language that the browser asks for, on a phone", { timeout: 4 * HANG_MS }, async () => {
+  let english;
+  for (const { locale, live, same } of LANGUAGES) {
+    const page = await open(url, { locale, viewport: { width: 390, height: 844 } });
+    await waitForSentence(page, live);
+    await page.waitForSelector("#scenes [role=switch]");
+    await page.waitForSelector(".trace canvas");
+    assert.equal(await page.getAttribute("html", "lang"), locale.slice(0, 2));
+    assert.equal(await page.inputValue("#language"), locale.slice(0, 2));
+    const own = await ownTexts(page);
+    assert.ok(own.length > 40 && own.every((text) => text !== ""), "texts are missing: " + own);
+    english ??= own;
+    if (english !== own) assert.deepEqual(own.filter((text, i) => text === english[i] && !same.includes(text)), [], locale);
+    await page.click("#log summary");
+    await page.waitForSelector("#log-lines li");
+    await openLook(page);
+    assert.equal(await isWider(page, 390), false, locale);
+    await assertAccessible(page, locale);
+    await screenshot(page, `language-${locale}-390`);
+    await page.evaluate(() => document.getElementById("pairing").showModal());
+    assert.equal(await isWider(page, 390), false, locale);
+    await assertAccessible(page, "pairing, " + locale);
+    await page.screenshot({ path: path.join(screenshots, `language-${locale}-390-pairing.png`) });
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  }
+});
+
+test("another language is chosen, and kept", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url, { locale: "pt-BR" }); // has no texts: English
+  await waitForSentence(page, LIVE);
+  await page.selectOption("#language", "de");
+  await waitForSentence(page, LANGUAGES[1].live);
+  assert.equal(await page.evaluate(() => document.activeElement.id), "language");
+  const again = await page.context().newPage();
+  await again.goto(url);
+  await waitForSentence(again, LANGUAGES[1].live);
+  assert.equal(await again.evaluate(() => document.activeElement.id), "");
+  assert.equal(await again.getAttribute("html", "lang"), "de");
+  await page.context().close();
+});
+
 test("motion is left out for whoever wants none", { timeout: 2 * HANG_MS }, async () => {
   for (const [reducedMotion, duration] of [["reduce", "0s"], ["no-preference", "0.4s"]]) {
     const page = await open(url, { reducedMotion });
@@ -344,6 +470,15 @@ test("another machine reads, and pairs before it changes something; hostile name
   assert.equal(await page.$("main img"), null);
   assert.equal(await page.title(), "Not live – Yuragi");
   assert.deepEqual(page.complaints, []);
+
+  await page.getByRole("switch", { name: /meadow/ }).click();
+  await page.click("#pairing-cancel");
+  await openLook(page);
+  await page.getByRole("slider", { name: "haze" }).focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForSelector("#pairing-code", { state: "visible" });
+  await page.click("#pairing-cancel");
+  await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.15")`);
 
   await page.getByRole("switch", { name: /meadow/ }).click();
   await page.fill("#pairing-code", "0000-0000");

@@ -1,7 +1,8 @@
 // Changes something: sends the request, pairs the browser if needed, and shows the result.
-import { by_id, set_text } from "./element";
+import { by_id, set_text, set_text_in } from "./element";
 import { Pairing } from "./pairing";
 import { ask, Refused } from "./request";
+import { DAEMON_LANGUAGE, language, texts } from "./texts";
 
 const TOLD_FOR_MS = 6000;
 
@@ -10,24 +11,26 @@ export class Change {
 
   constructor(private readonly pairing: Pairing) {}
 
-  /** Sends the request; undefined if it was not carried out, which the page then shows. */
-  async make<T>(path: string, body: object): Promise<T | undefined> {
+  /** Sends the request; undefined if it was not carried out. The page then shows why, or `refused` does. */
+  async make<T>(path: string, body: object, refused = (why: string) => this.tell(DAEMON_LANGUAGE, why)): Promise<T | undefined> {
     try {
       return await ask<T>(path, body);
     } catch (error) {
       if (error instanceof Refused && error.status === 401) {
-        if (await this.pairing.open(error.message)) return this.make<T>(path, body);
+        if (await this.pairing.open(error.message)) return this.make<T>(path, body, refused);
+      } else if (error instanceof Refused) {
+        refused(error.message);
       } else {
-        this.tell(error instanceof Refused ? error.message : "Not done: the daemon does not reply.");
+        this.tell(language, texts.not_done_no_reply);
       }
       return undefined;
     }
   }
 
-  private tell(text: string): void {
+  private tell(lang: string, text: string): void {
     const toast = by_id("toast");
-    set_text(by_id("alert"), text);
-    set_text(toast, text);
+    set_text_in(lang, by_id("alert"), text);
+    set_text_in(lang, toast, text);
     toast.hidden = false;
     clearTimeout(this.hide);
     this.hide = setTimeout(() => {

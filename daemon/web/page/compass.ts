@@ -1,7 +1,7 @@
 // Where the wind comes from: an arrow that blows across a dial, north on top.
 import { svg } from "./element";
+import { texts } from "./texts";
 
-const POINTS = ["N", "E", "S", "W"];
 const CARDINAL_RADIUS = 80;
 
 /** An arrow that turns the shorter way. */
@@ -29,7 +29,7 @@ export class Compass {
     const ticks = Array.from({ length: 36 }, (_, index) =>
       svg("path", { class: index % 9 === 0 ? "tick main" : "tick", d: "M0-92v-6", transform: `rotate(${index * 10})` }),
     );
-    const letters = POINTS.map((point, index) => {
+    const letters = texts.compass.map((point, index) => {
       const angle = (index * Math.PI) / 2;
       const x = CARDINAL_RADIUS * Math.sin(angle);
       const y = -CARDINAL_RADIUS * Math.cos(angle);

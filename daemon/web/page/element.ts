@@ -33,6 +33,12 @@ export function set_text(node: Node, text: string): void {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** Sets a text and its language. */
+export function set_text_in(lang: string, node: HTMLElement, text: string): void {
+  node.lang = lang;
+  set_text(node, text);
+}
+
 /** Elements that stand for items of a list, kept as long as there are as many with the same names. */
 export class Rows<Row> {
   private names = "";

@@ -3,19 +3,20 @@ import { element, set_text } from "./element";
 import { ask, Refused } from "./request";
 import { History } from "./status";
 import { color, root_px } from "./style";
+import { texts } from "./texts";
 import uPlot from "./vendor/uplot/uPlot.esm.js";
+import { plain_number_text } from "./wording";
 
 const ASK_EVERY_MS = 60_000;
 const ASK_AGAIN_MS = 5000; // while it is still being read
 const PATIENCE_MS = 10_000;
 const HEIGHT_REM = 12;
 const LEAST_SCALE_M_S = 2;
-const NOT_RECORDED = "Nothing is recorded. To see the last 24 hours here, name a file in the configuration: [recording] file.";
 const COLORS = ["--measured", "--blended", "--other", "--live"]; // as .legend of page.css has them
 const BAND_OPACITY = "40";
 
 export class HistoryView {
-  private readonly note = element("p", { class: "empty" }, "Loading …");
+  private readonly note = element("p", { class: "empty" }, texts.loading);
   private readonly place = element("div", { class: "history", role: "img", hidden: "" });
   private readonly legend = element("ul", { class: "legend", hidden: "" });
   private plot: uPlot | undefined;
@@ -36,7 +37,7 @@ export class HistoryView {
   show(is_recorded: boolean): void {
     if (is_recorded === this.is_recorded) return;
     this.is_recorded = is_recorded;
-    if (!is_recorded) this.say(NOT_RECORDED);
+    if (!is_recorded) this.say(texts.nothing_recorded_ever);
     this.ask_now();
   }
 
@@ -53,17 +54,17 @@ export class HistoryView {
     try {
       this.history = await ask<History>("/api/v1/history?hours=24", undefined, PATIENCE_MS);
       const names = this.history.sensors.map((sensor) => sensor.name);
-      this.say(names.length > 0 ? "" : "Nothing was recorded in the last 24 hours.");
-      this.place.setAttribute("aria-label", `The recorded wind of the last 24 hours: ${names.join(", ")}`);
+      this.say(names.length > 0 ? "" : texts.nothing_recorded);
+      this.place.setAttribute("aria-label", texts.recorded_wind(names.join(texts.between)));
       this.legend.replaceChildren(...names.map((name, index) => element("li", { "data-color": String(index % COLORS.length) }, name)));
       this.draw();
     } catch (error) {
       if (error instanceof Refused && error.status === 404) {
-        this.say(NOT_RECORDED);
+        this.say(texts.nothing_recorded_ever);
       } else {
         again_ms = ASK_AGAIN_MS;
         const is_slow = error instanceof Refused && error.status === 503;
-        if (!this.history) this.say(is_slow ? "Still being read …" : "The recording cannot be read at present.");
+        if (!this.history) this.say(is_slow ? texts.still_read : texts.recording_unreadable);
       }
     } finally {
       this.is_asking = false;
@@ -108,7 +109,8 @@ export class HistoryView {
       axes: [
         { ...axis, grid: { show: false }, space: 5 * rem, size: 1.8 * rem, gap: 0.5 * rem,
           values: (_plot, splits) => splits.map((time_s) => clock.format(new Date(1000 * time_s))) },
-        { ...axis, grid: { stroke: color("--line"), width: 1 }, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem },
+        { ...axis, grid: { stroke: color("--line"), width: 1 }, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem,
+          values: (_plot, splits) => splits.map(plain_number_text) },
       ],
       series: [{}, ...colors.flatMap((stroke) => [hidden, hidden, { stroke, width: 1.5 }])],
       bands: colors.map((fill, index) => ({ series: [3 * index + 1, 3 * index + 2] as uPlot.Band.Bounds, fill: fill + BAND_OPACITY })),

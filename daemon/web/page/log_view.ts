@@ -1,7 +1,8 @@
 // The last lines of the daemon's log, while they are visible.
-import { element, set_text } from "./element";
+import { element, set_text_in } from "./element";
 import { ask, Refused } from "./request";
 import { LogLine } from "./status";
+import { DAEMON_LANGUAGE, language, texts } from "./texts";
 import { clock_text } from "./wording";
 
 const ASK_EVERY_MS = 5000;
@@ -24,16 +25,17 @@ export class LogView {
   private async load(): Promise<void> {
     try {
       const { lines } = await ask<{ lines: LogLine[] }>("/api/v1/log?lines=200");
-      this.say(lines.length > 0 ? "" : "Nothing was logged.");
+      this.say(lines.length > 0 ? "" : texts.log_empty);
       this.show(lines);
     } catch (error) {
-      if (error instanceof Refused) this.say(error.status === 401 ? "Only a paired browser may read the log." : error.message);
-      // Otherwise the link shows what is wrong.
+      if (!(error instanceof Refused)) return; // the link shows what is wrong
+      if (error.status === 401) this.say(texts.log_unpaired);
+      else this.say(error.message, DAEMON_LANGUAGE);
     }
   }
 
-  private say(text: string): void {
-    set_text(this.note, text);
+  private say(text: string, lang = language): void {
+    set_text_in(lang, this.note, text);
     this.note.hidden = text === "";
     this.list.hidden = text !== "";
   }
@@ -51,7 +53,7 @@ function item_of({ time_s, level, text }: LogLine): HTMLElement {
   const time = new Date(1000 * time_s);
   return element(
     "li",
-    QUIET.includes(level) ? {} : { class: "serious" },
+    { lang: DAEMON_LANGUAGE, ...(!QUIET.includes(level) && { class: "serious" }) },
     element("time", { datetime: time.toISOString() }, clock_text(time)),
     " ",
     element("span", { class: "level" }, level),

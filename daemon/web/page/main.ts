@@ -5,6 +5,7 @@ import { HealthView } from "./health_view";
 import { HistoryView } from "./history_view";
 import { listen } from "./link";
 import { LogView } from "./log_view";
+import { LookView } from "./look_view";
 import { Pairing } from "./pairing";
 import { PlayersView } from "./players_view";
 import { ask } from "./request";
@@ -12,11 +13,15 @@ import { ScenesView } from "./scenes_view";
 import { Knowledge, verdict_of } from "./sentence";
 import { SensorsView } from "./sensors_view";
 import { Player, Scene, Status } from "./status";
+import { DAEMON_LANGUAGE, fill_in_texts, offer_languages, texts } from "./texts";
 import { WindView } from "./wind_view";
 
 const REDRAW_EVERY_MS = 200;
 const ASK_FOR_LISTS_EVERY_MS = 2000;
 const NEWS_ARE_OLD_AFTER_S = 3;
+
+fill_in_texts();
+offer_languages(by_id("language") as HTMLSelectElement);
 
 const pairing = new Pairing();
 const change = new Change(pairing);
@@ -26,6 +31,7 @@ const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
 const history = new HistoryView(by_id("history"));
 const log = new LogView(by_id("log") as HTMLDetailsElement, by_id("log-note"), by_id("log-lines"));
+const look = new LookView(by_id("look") as HTMLDetailsElement, change);
 const health = new HealthView(by_id("health"));
 
 let knowledge: Knowledge = { kind: "connecting" };
@@ -38,9 +44,9 @@ const since_s = () => (performance.now() - heard_ms) / 1000;
 function show_attention(items: string[]): void {
   const list = by_id("attention");
   const text = items.join("\n");
-  if (list.dataset["text"] === text) return;
-  list.dataset["text"] = text;
-  list.replaceChildren(...items.map((item) => element("li", {}, item)));
+  if (list.dataset["items"] === text) return;
+  list.dataset["items"] = text;
+  list.replaceChildren(...items.map((item) => element("li", { lang: DAEMON_LANGUAGE }, item)));
   list.hidden = items.length === 0;
 }
 
@@ -50,7 +56,7 @@ function show_verdict(): void {
   set_text(by_id("sentence"), verdict.text);
   set_text(by_id("announcement"), verdict.announcement);
   by_id("unpaired").hidden = !(knowledge.kind === "refused" && knowledge.needs_pairing);
-  const title = { live: "Live", attention: "Live, with faults", other: "Not live", lost: "No connection" }[verdict.light];
+  const title = texts.titles[verdict.light];
   if (document.title !== `${title} – Yuragi`) document.title = `${title} – Yuragi`;
 }
 
@@ -62,6 +68,7 @@ function forget(what: Knowledge): void {
     scenes.clear();
     players.clear();
     health.clear();
+    look.clear();
     show_attention([]);
   }
   knowledge = what;
@@ -122,6 +129,7 @@ void listen({
       void wind.fill();
       history.ask_now();
       log.ask_now();
+      look.ask_now();
     }
   },
   refused(refusal) {

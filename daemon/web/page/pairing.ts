@@ -1,6 +1,7 @@
 // The dialog for the code that pairs this browser.
-import { by_id, set_text } from "./element";
+import { by_id, set_text_in } from "./element";
 import { ask, Refused } from "./request";
+import { DAEMON_LANGUAGE, language, texts } from "./texts";
 
 export class Pairing {
   private readonly dialog = by_id("pairing") as HTMLDialogElement;
@@ -21,7 +22,7 @@ export class Pairing {
   open(why = ""): Promise<boolean> {
     this.end(false);
     this.code.value = "";
-    set_text(this.error, why.includes("token_file") ? why : "");
+    set_text_in(DAEMON_LANGUAGE, this.error, why.includes("token_file") ? why : "");
     this.dialog.showModal();
     return new Promise((resolve) => (this.done = resolve));
   }
@@ -37,7 +38,8 @@ export class Pairing {
       this.end(true);
       this.dialog.close();
     } catch (error) {
-      set_text(this.error, error instanceof Refused ? error.message : "The daemon does not reply.");
+      if (error instanceof Refused) set_text_in(DAEMON_LANGUAGE, this.error, error.message);
+      else set_text_in(language, this.error, texts.no_reply);
       this.code.select();
     }
   }

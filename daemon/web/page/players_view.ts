@@ -2,9 +2,12 @@
 import { Change } from "./change";
 import { element, Rows, set_text } from "./element";
 import { Player } from "./status";
-import { place_text } from "./wording";
+import { texts } from "./texts";
+import { place_text, plain_number_text } from "./wording";
 
 const RATES = ["0.5", "1", "2", "10", "60"];
+
+const rate_option = (value: string) => element("option", { value }, plain_number_text(Number(value)) + " ×");
 
 interface Row {
   item: HTMLElement;
@@ -24,7 +27,7 @@ export class PlayersView {
     list: HTMLElement,
     private readonly change: Change,
   ) {
-    this.rows = new Rows(list, (sensor) => this.make_row(sensor), "None.");
+    this.rows = new Rows(list, (sensor) => this.make_row(sensor), texts.none);
   }
 
   show(players: Player[]): void {
@@ -37,12 +40,12 @@ export class PlayersView {
       set_text(row.file, player.file.split("/").pop() ?? player.file);
       const position_s = player.position_s ?? 0;
       const length_s = player.length_s ?? 0;
-      const state = player.refusal ? player.refusal : !player.is_open ? "not open" : player.is_finished ? "at its end" : player.is_paused ? "paused" : "";
-      set_text(row.place, `${place_text(position_s)} of ${place_text(length_s)}${state ? ", " + state : ""}`);
+      const state = player.refusal ? player.refusal : !player.is_open ? texts.not_open : player.is_finished ? texts.at_end : player.is_paused ? texts.paused : "";
+      set_text(row.place, texts.place_of(place_text(position_s), place_text(length_s)) + (state && texts.between + state));
       row.progress.max = Math.max(length_s, 1);
       row.progress.value = position_s;
       row.pause.dataset["action"] = player.is_paused ? "resume" : "pause";
-      set_text(row.pause, player.is_paused ? "Resume" : "Pause");
+      set_text(row.pause, player.is_paused ? texts.resume : texts.pause);
       if (player.rate !== null && document.activeElement !== row.rate) this.show_rate(row.rate, String(player.rate));
     });
   }
@@ -53,7 +56,7 @@ export class PlayersView {
 
   private show_rate(select: HTMLSelectElement, rate: string): void {
     const is_there = Array.from(select.options).some((option) => option.value === rate);
-    if (!is_there) select.append(element("option", { value: rate }, rate + " ×"));
+    if (!is_there) select.append(rate_option(rate));
     select.value = rate;
   }
 
@@ -69,13 +72,13 @@ export class PlayersView {
     };
     const file = element("span", { class: "age" });
     const place = element("p", { class: "reason" });
-    const progress = element("progress", { "aria-label": `Place in the recording of ${sensor}` });
-    const pause = button("Pause", "", () => ({ action: pause.dataset["action"] ?? "pause" }));
-    const rate = element("select", { "aria-label": "Rate" }, ...RATES.map((value) => element("option", { value }, value + " ×")));
+    const progress = element("progress", { "aria-label": texts.place_in(sensor) });
+    const pause = button(texts.pause, "", () => ({ action: pause.dataset["action"] ?? "pause" }));
+    const rate = element("select", { "aria-label": texts.rate }, ...RATES.map(rate_option));
     rate.addEventListener("change", () => void post({ action: "rate", rate: Number(rate.value) }));
-    const controls = element("fieldset", { class: "buttons" }, element("legend", { class: "unseen" }, `Play ${sensor}`),
-      button("−30 s", "Back by 30 seconds", () => ({ action: "seek", place: "-30" })), pause,
-      button("+30 s", "Forward by 30 seconds", () => ({ action: "seek", place: "+30" })), rate);
+    const controls = element("fieldset", { class: "buttons" }, element("legend", { class: "unseen" }, texts.play(sensor)),
+      button("−" + texts.seconds("30"), texts.back, () => ({ action: "seek", place: "-30" })), pause,
+      button("+" + texts.seconds("30"), texts.forward, () => ({ action: "seek", place: "+30" })), rate);
     const item = element("li", {}, element("div", { class: "line" }, element("h3", {}, sensor), file), progress, place, controls);
     return { item, row: { item, file, place, progress, pause, rate, controls } };
   }

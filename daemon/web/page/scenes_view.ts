@@ -2,8 +2,7 @@
 import { Change } from "./change";
 import { element, Rows, set_text } from "./element";
 import { Scene } from "./status";
-
-const FADES_S: [string, string][] = [["0", "at once"], ["2", "in 2 s"], ["10", "in 10 s"], ["60", "in a minute"]];
+import { texts } from "./texts";
 
 interface Row {
   control: HTMLInputElement;
@@ -13,7 +12,7 @@ interface Row {
 export class ScenesView {
   private readonly rows: Rows<Row>;
   private readonly fade = element("select", { id: "fade" },
-    ...FADES_S.map(([value, text]) => element("option", { value }, text)));
+    ...Object.entries(texts.fades).map(([value, text]) => element("option", { value }, text)));
   private readonly all = element("fieldset");
   private readonly every = element("button", { type: "button", class: "every" });
   private scenes: Scene[] = [];
@@ -21,10 +20,10 @@ export class ScenesView {
 
   constructor(place: HTMLElement, private readonly change: Change) {
     const list = element("ul", { class: "rows" });
-    this.rows = new Rows(list, (name) => this.make_row(name), "No scene is configured.");
+    this.rows = new Rows(list, (name) => this.make_row(name), texts.no_scene);
     this.fade.value = "2";
-    this.all.append(element("legend", { class: "unseen" }, "Show or hide scenes"), list,
-      element("p", { class: "line fade" }, element("label", { for: "fade" }, "Scenes change"), this.fade), this.every);
+    this.all.append(element("legend", { class: "unseen" }, texts.show_or_hide), list,
+      element("p", { class: "line fade" }, element("label", { for: "fade" }, texts.scenes_change), this.fade), this.every);
     this.every.addEventListener("click", () => void this.show_or_hide_all());
     place.append(this.all);
   }
@@ -34,7 +33,7 @@ export class ScenesView {
     this.scenes = scenes;
     this.all.disabled = false;
     this.every.hidden = scenes.length < 2;
-    set_text(this.every, this.is_any_shown() ? "Hide all" : "Show all");
+    set_text(this.every, this.is_any_shown() ? texts.hide_all : texts.show_all);
     const rows = this.rows.for_names(scenes.map((scene) => scene.name));
     scenes.forEach((scene, index) => {
       const row = rows[index];

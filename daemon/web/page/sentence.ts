@@ -1,6 +1,7 @@
-// The one sentence and the one light on top. Pure: what is known and the time in, text out.
+// The one sentence and the one light on top. Pure: what is known and the time in, text in the reader's language out.
 import { leading_sensor, Sensor, Status } from "./status";
-import { clock_text, duration_text, wind_text } from "./wording";
+import { texts } from "./texts";
+import { clock_text, duration_text, wind_text, word_of } from "./wording";
 
 /** What the page knows of the daemon. */
 export type Knowledge =
@@ -24,46 +25,39 @@ export function age_of(sensor: Sensor, status: Status, since_s: number): number 
   return sensor.age_s === null ? null : sensor.age_s + status.age_s + since_s;
 }
 
-const HOW: Record<string, string> = {
-  live: "Live",
-  replayed: "A recording, not live",
-  simulated: "Synthetic wind, not measured",
-};
-
 function verdict_of_sensor(sensor: Sensor, status: Status, since_s: number): Verdict {
   const age_s = age_of(sensor, status, since_s);
-  const how = HOW[sensor.state] ?? sensor.state;
-  const announcement = `${how}: ${sensor.name}`;
-  const age = age_s === null ? "" : `, ${duration_text(age_s)} old`;
+  const announcement = texts.source_and_sensor(word_of(texts.sources, sensor.state), sensor.name);
+  const age = age_s === null ? [] : [texts.old(duration_text(age_s))];
   const light = sensor.state !== "live" ? "other" : status.verdict === "well" ? "live" : "attention";
-  return { light, text: `${announcement}, ${wind_text(sensor.speed_m_s, sensor.direction_deg)}${age}`, announcement };
+  return { light, text: [announcement, wind_text(sensor.speed_m_s, sensor.direction_deg), ...age].join(texts.between), announcement };
 }
 
 function verdict_without_sensor(status: Status): Verdict {
   const wind =
-    status.wind.source === "live" ? "A recording plays, nothing is measured"
-    : status.wind.source === "handover" ? "No longer measured"
-    : "Synthetic wind";
-  const [first, ...others] = status.sensors;
+    status.wind.source === "live" ? texts.recording_plays
+    : status.wind.source === "handover" ? texts.no_longer_measured
+    : texts.synthetic_wind;
+  const states = status.sensors.map((sensor) => texts.sensor_is(sensor.name, word_of(texts.states, sensor.state)));
   const why =
-    first === undefined ? "no sensor is configured"
-    : others.length === 0 ? `${first.name} is ${first.state}`
-    : `no sensor is live: ${status.sensors.map((sensor) => `${sensor.name} is ${sensor.state}`).join(", ")}`;
-  const text = `${wind}, because ${why}`;
+    states.length === 0 ? texts.no_sensor_configured
+    : states.length === 1 ? states.join()
+    : texts.no_sensor_live(states.join(texts.between));
+  const text = texts.wind_because(wind, why);
   return { light: "other", text, announcement: text };
 }
 
 export function verdict_of(knowledge: Knowledge): Verdict {
   switch (knowledge.kind) {
     case "connecting":
-      return { light: "lost", text: "Connecting to the daemon …", announcement: "" };
+      return { light: "lost", text: texts.connecting, announcement: "" };
     case "lost": {
-      const text = `No connection since ${clock_text(knowledge.since)}`;
+      const text = texts.no_connection_since(clock_text(knowledge.since));
       return { light: "lost", text, announcement: text };
     }
     case "refused": {
-      const text = knowledge.needs_pairing ? "This browser may not see anything until it is paired" : `No news: ${knowledge.why}`;
-      return { light: "lost", text, announcement: knowledge.needs_pairing ? text : "No news from the daemon" };
+      const text = knowledge.needs_pairing ? texts.not_readable_yet : texts.no_news_because(knowledge.why);
+      return { light: "lost", text, announcement: knowledge.needs_pairing ? text : texts.no_news };
     }
     case "news": {
       const sensor = leading_sensor(knowledge.status);

@@ -1,7 +1,9 @@
 // The last minutes of the wind as lines: measured, as it is blended, and the share of noise in it.
 import { RecentWind } from "./status";
 import { color, root_px } from "./style";
+import { texts } from "./texts";
 import uPlot from "./vendor/uplot/uPlot.esm.js";
+import { plain_number_text } from "./wording";
 
 const LENGTH_S = 180;
 const LEAST_LENGTH_S = 30; // while there is little to show
@@ -19,7 +21,7 @@ export class Trace {
   constructor() {
     this.place.className = "trace";
     this.place.setAttribute("role", "img");
-    this.place.setAttribute("aria-label", "The wind of the last three minutes");
+    this.place.setAttribute("aria-label", texts.trace);
     new ResizeObserver(() => this.resize()).observe(this.place);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw_anew());
   }
@@ -105,7 +107,8 @@ export class Trace {
       axes: [
         { ...axis, grid: { show: false }, space: 6 * rem, size: 1.8 * rem, gap: 0.5 * rem,
           values: (_plot, splits) => splits.map((time_s) => clock.format(new Date(1000 * time_s))) },
-        { ...axis, scale: "speed", grid, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem },
+        { ...axis, scale: "speed", grid, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem,
+          values: (_plot, splits) => splits.map(plain_number_text) },
         { ...axis, scale: "share", side: 1, grid: { show: false }, size: 2.9 * rem, gap: 0.3 * rem, space: 3.5 * rem,
           values: (_plot, splits) => splits.map((share) => share + " %") },
       ],

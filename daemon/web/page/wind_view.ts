@@ -3,8 +3,9 @@ import { Compass } from "./compass";
 import { element, set_text } from "./element";
 import { ask } from "./request";
 import { leading_sensor, RecentWind, Status } from "./status";
+import { texts } from "./texts";
 import { Trace } from "./trace";
-import { from_text } from "./wording";
+import { from_text, number_text } from "./wording";
 
 const UNKNOWN = "–";
 
@@ -27,9 +28,9 @@ class Figure {
 export class WindView {
   private readonly compass = new Compass();
   private readonly trace = new Trace();
-  private readonly measured = new Figure("Measured", "measured", "m/s");
-  private readonly blended = new Figure("Blended", "blended", "m/s");
-  private readonly noise = new Figure("Noise in it", "noise", "%");
+  private readonly measured = new Figure(texts.measured, "measured", "m/s");
+  private readonly blended = new Figure(texts.blended, "blended", "m/s");
+  private readonly noise = new Figure(texts.noise, "noise", "%");
 
   constructor(place: HTMLElement) {
     place.append(
@@ -46,9 +47,9 @@ export class WindView {
     const share = 1 - wind.live_weight;
     const direction = (direction_deg: number | null | undefined) => (direction_deg == null ? "" : from_text(direction_deg));
     this.compass.show(sensor?.direction_deg ?? null, wind.direction_deg);
-    this.measured.show(measured_m_s === null ? UNKNOWN : measured_m_s.toFixed(1), direction(sensor?.direction_deg));
-    this.blended.show(wind.speed_m_s.toFixed(1), direction(wind.direction_deg));
-    this.noise.show((100 * share).toFixed(0), "");
+    this.measured.show(measured_m_s === null ? UNKNOWN : number_text(measured_m_s, 1), direction(sensor?.direction_deg));
+    this.blended.show(number_text(wind.speed_m_s, 1), direction(wind.direction_deg));
+    this.noise.show(number_text(100 * share, 0), "");
     this.trace.add(Date.now() / 1000, measured_m_s, wind.speed_m_s, share);
   }
 
