@@ -230,10 +230,80 @@ const LANGUAGES = [
 ];
 /** Texts of ours that do not change while the page is open. */
 const ownTexts = (page) => page.evaluate(() => [
-  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
+  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
   ...[...document.querySelectorAll("[data-label], .trace")].map((one) => one.ariaLabel),
 ]);
 const isWider = (page, width) => page.evaluate((width) => document.documentElement.scrollWidth > width, width);
+
+/** Opens the card with the values of [look], and of the first scene. */
+async function openLook(page) {
+  await page.click("#look > summary");
+  await page.click("#look .group:nth-child(1) summary");
+  await page.click("#look .group:nth-child(2) summary");
+  await page.waitForSelector("#look fieldset:enabled");
+}
+/** The value that the daemon has; without a scene: of [look]. */
+async function parameterOf(name, scene = "") {
+  const { parameters } = await (await fetch(url + "api/v1/parameters")).json();
+  return parameters.find((group) => group.scene === scene).parameters.find((parameter) => parameter.name === name).value;
+}
+const isSent = (page) => page.waitForResponse((response) => response.request().method() === "POST");
+
+test("the keyboard moves a slider of the look, and undo gives its value before back", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await openLook(page);
+  const clouds = page.getByRole("slider", { name: "clouds" });
+  const waitForClouds = (text) => page.waitForSelector(`.parameter:has(label:text-is("clouds")) output:text-is("${text}")`);
+  await waitForClouds("0.3");
+  await clouds.focus();
+  const sent = isSent(page);
+  await page.keyboard.press("ArrowRight");
+  await sent;
+  await waitForClouds("0.305");
+  assert.equal(await parameterOf("clouds"), 0.305);
+  assert.equal(await clouds.getAttribute("aria-valuetext"), "0.305");
+  const undone = isSent(page);
+  await page.getByRole("button", { name: "Undo: clouds" }).click();
+  await undone;
+  await waitForClouds("0.3");
+  assert.equal(await parameterOf("clouds"), 0.3);
+  assert.ok(await page.getByRole("button", { name: "Undo" }).isDisabled());
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a select, a field and a switch set values; those of others appear; one that is refused goes back with its reason", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await openLook(page);
+  const answered = async (act) => (await Promise.all([isSent(page), act()]))[0].status();
+  const palette = page.getByLabel("palette");
+  assert.equal(await answered(() => palette.selectOption("autumn")), 200);
+  assert.equal(await parameterOf("palette"), "autumn");
+  const x = page.locator("#look .group:nth-child(2)").getByLabel("x (m)", { exact: true });
+  const setX = async (value) => {
+    await x.fill(value);
+    await x.press("Enter");
+  };
+  assert.equal(await answered(() => setX("2.5")), 200);
+  assert.equal(await parameterOf("x", "meadow"), 2.5);
+  assert.equal(await answered(() => setX("5000")), 409);
+  await page.waitForSelector(`.parameter:has(label:text-is("x (m)")) .error:text("is 5000; allowed: number from -1000 to 1000")`);
+  await page.waitForFunction((x) => x.value === "2.5", await x.elementHandle());
+  assert.equal(await parameterOf("x", "meadow"), 2.5);
+  await assertAccessible(page, "look");
+  await screenshot(page, "look-1920-light");
+  assert.equal(await answered(() => page.locator("#look .group:nth-child(2)").getByRole("switch", { name: "shown" }).click()), 200);
+  assert.equal(await parameterOf("shown", "meadow"), false);
+  for (const name of ["shown", "x", "palette"]) assert.equal(await answered(() => page.getByRole("button", { name: "Undo: " + name }).click()), 200);
+  assert.deepEqual([await parameterOf("shown", "meadow"), await parameterOf("x", "meadow"), await parameterOf("palette")], [true, 0, "meadow"]);
+  const set = (body) => fetch(url + "api/v1/parameters", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+  assert.ok((await set({ set: { haze: 0.61 } })).ok);
+  await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.61")`);
+  assert.ok((await set({ reset: ["haze"] })).ok);
+  await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.15")`);
+  assert.ok(page.complaints.every((complaint) => complaint.includes("409")), page.complaints.join()); // the browser reports the refusal
+  await page.context().close();
+});
 
 test("in each language that the browser asks for, on a phone", { timeout: 4 * HANG_MS }, async () => {
   let english;
@@ -250,6 +320,7 @@ test("in each language that the browser asks for, on a phone", { timeout: 4 * HA
     if (english !== own) assert.deepEqual(own.filter((text, i) => text === english[i] && !same.includes(text)), [], locale);
     await page.click("#log summary");
     await page.waitForSelector("#log-lines li");
+    await openLook(page);
     assert.equal(await isWider(page, 390), false, locale);
     await assertAccessible(page, locale);
     await screenshot(page, `language-${locale}-390`);
@@ -399,6 +470,15 @@ test("another machine reads, and pairs before it changes something; hostile name
   assert.equal(await page.$("main img"), null);
   assert.equal(await page.title(), "Not live – Yuragi");
   assert.deepEqual(page.complaints, []);
+
+  await page.getByRole("switch", { name: /meadow/ }).click();
+  await page.click("#pairing-cancel");
+  await openLook(page);
+  await page.getByRole("slider", { name: "haze" }).focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForSelector("#pairing-code", { state: "visible" });
+  await page.click("#pairing-cancel");
+  await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.15")`);
 
   await page.getByRole("switch", { name: /meadow/ }).click();
   await page.fill("#pairing-code", "0000-0000");

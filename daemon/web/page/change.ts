@@ -11,15 +11,15 @@ export class Change {
 
   constructor(private readonly pairing: Pairing) {}
 
-  /** Sends the request; undefined if it was not carried out, which the page then shows. */
-  async make<T>(path: string, body: object): Promise<T | undefined> {
+  /** Sends the request; undefined if it was not carried out. The page then shows why, or `refused` does. */
+  async make<T>(path: string, body: object, refused = (why: string) => this.tell(DAEMON_LANGUAGE, why)): Promise<T | undefined> {
     try {
       return await ask<T>(path, body);
     } catch (error) {
       if (error instanceof Refused && error.status === 401) {
-        if (await this.pairing.open(error.message)) return this.make<T>(path, body);
+        if (await this.pairing.open(error.message)) return this.make<T>(path, body, refused);
       } else if (error instanceof Refused) {
-        this.tell(DAEMON_LANGUAGE, error.message);
+        refused(error.message);
       } else {
         this.tell(language, texts.not_done_no_reply);
       }

@@ -5,6 +5,7 @@ import { HealthView } from "./health_view";
 import { HistoryView } from "./history_view";
 import { listen } from "./link";
 import { LogView } from "./log_view";
+import { LookView } from "./look_view";
 import { Pairing } from "./pairing";
 import { PlayersView } from "./players_view";
 import { ask } from "./request";
@@ -30,6 +31,7 @@ const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
 const history = new HistoryView(by_id("history"));
 const log = new LogView(by_id("log") as HTMLDetailsElement, by_id("log-note"), by_id("log-lines"));
+const look = new LookView(by_id("look") as HTMLDetailsElement, change);
 const health = new HealthView(by_id("health"));
 
 let knowledge: Knowledge = { kind: "connecting" };
@@ -66,6 +68,7 @@ function forget(what: Knowledge): void {
     scenes.clear();
     players.clear();
     health.clear();
+    look.clear();
     show_attention([]);
   }
   knowledge = what;
@@ -126,6 +129,7 @@ void listen({
       void wind.fill();
       history.ask_now();
       log.ask_now();
+      look.ask_now();
     }
   },
   refused(refusal) {

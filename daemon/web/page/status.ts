@@ -139,6 +139,31 @@ export interface LogLine {
   text: string;
 }
 
+/** In the type of the parameter; null: left out. */
+export type ParameterValue = number | boolean | string | null;
+
+export interface Parameter {
+  name: string;
+  value: ParameterValue;
+  configured: ParameterValue;
+  default: ParameterValue;
+  unit: string;
+  kind: "number" | "whole number" | "true or false" | "text";
+  min: number | null;
+  max: number | null;
+  choices: string[];
+  left_out: string;
+  change: "at once" | "cross-fade" | "takes a restart" | "takes a reload";
+  help: string;
+}
+
+/** Of a scene; without a name: of [look]. */
+export interface ParameterGroup {
+  scene: string;
+  kind: string;
+  parameters: Parameter[];
+}
+
 /** The states of a sensor whose readings make the wind. */
 const BELIEVED = ["live", "replayed", "simulated"];
 

@@ -73,6 +73,14 @@ export const english = {
   show_all: "Show all",
   hide_all: "Hide all",
 
+  // Look.
+  look: "Look",
+  look_lasts: "Changes last until the configuration is read again.",
+  look_of_all: "Light, sky and ground",
+  undo: "Undo",
+  undo_of: (name: string) => `Undo: ${name}`,
+  left_out: "Not set:",
+
   // Recordings that play.
   recordings: "Recordings that play",
   none: "None.",

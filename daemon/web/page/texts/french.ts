@@ -68,6 +68,13 @@ export const french: Texts = {
   show_all: "Tout montrer",
   hide_all: "Tout cacher",
 
+  look: "Aspect",
+  look_lasts: "Les changements durent jusqu’à la prochaine lecture de la configuration.",
+  look_of_all: "Lumière, ciel et sol",
+  undo: "Annuler la modification",
+  undo_of: (name) => `Annuler : ${name}`,
+  left_out: "Non défini :",
+
   recordings: "Enregistrements en lecture",
   none: "Aucun.",
   not_open: "non ouvert",

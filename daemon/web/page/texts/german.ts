@@ -67,6 +67,13 @@ export const german: Texts = {
   show_all: "Alle zeigen",
   hide_all: "Alle verbergen",
 
+  look: "Aussehen",
+  look_lasts: "Änderungen gelten, bis die Konfiguration neu gelesen wird.",
+  look_of_all: "Licht, Himmel und Boden",
+  undo: "Rückgängig",
+  undo_of: (name) => `Rückgängig: ${name}`,
+  left_out: "Nicht gesetzt:",
+
   recordings: "Laufende Aufzeichnungen",
   none: "Keine.",
   not_open: "nicht offen",

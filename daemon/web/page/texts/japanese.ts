@@ -67,6 +67,13 @@ export const japanese: Texts = {
   show_all: "すべて表示",
   hide_all: "すべて非表示",
 
+  look: "見た目",
+  look_lasts: "変更は、設定が次に読み込まれるまで有効です。",
+  look_of_all: "光・空・地面",
+  undo: "元に戻す",
+  undo_of: (name) => `元に戻す：${name}`,
+  left_out: "未設定の場合：",
+
   recordings: "再生中の記録",
   none: "なし",
   not_open: "未オープン",
