@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/web/media_type.hpp"
 #include "daemon/web/page.hpp"
 #include "daemon/web/problem.hpp"
 #include "engine/platform/whole_file.hpp"
@@ -19,25 +20,17 @@ namespace {
 constexpr std::size_t kMaxFiles = 64;
 constexpr std::size_t kMaxFile_bytes = 4UL << 20;
 
-struct MediaType {
-  std::string_view extension, type;
-};
-constexpr std::array kMediaTypes = {
-    MediaType{".html", "text/html; charset=utf-8"}, MediaType{".css", "text/css; charset=utf-8"},
-    MediaType{".js", "text/javascript; charset=utf-8"}, MediaType{".wasm", "application/wasm"}};
-
 /// In the order of preference.
 struct Encoding {
   std::string_view extension, name;
 };
 constexpr std::array kEncodings = {Encoding{".br", "br"}, Encoding{".gz", "gzip"}};
 
-/// The extension without that of an encoding: ".wasm" of "viewer.wasm.br". nullopt: such files are not served.
+/// Of the file before it was compressed; nullopt: such files are not served.
 std::optional<std::string_view> content_type_of(std::filesystem::path file) {
   if (std::ranges::find(kEncodings, file.extension().string(), &Encoding::extension) != kEncodings.end())
     file.replace_extension();
-  const auto* const found = std::ranges::find(kMediaTypes, file.extension().string(), &MediaType::extension);
-  return found == kMediaTypes.end() ? std::nullopt : std::optional(found->type);
+  return media_type_of(file);
 }
 
 /// Returns true if a list as "gzip, deflate, br;q=1.0" has the word, and does not refuse it.

@@ -1,8 +1,6 @@
 #include "daemon/web/site.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <charconv>
 #include <condition_variable>
 #include <deque>
@@ -15,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/web/media_type.hpp"
 #include "daemon/web/problem.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/platform/whole_file.hpp"
@@ -29,53 +28,6 @@ constexpr const char* kPolicy =
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src 'self' data: "
     "blob:; font-src 'self' data:; media-src 'self' blob:; worker-src 'self' blob:; base-uri 'none'; form-action "
     "'none'; frame-ancestors 'self'";
-
-struct MediaType {
-  std::string_view extension, type;
-};
-constexpr std::array kMediaTypes = {
-    MediaType{".html", "text/html; charset=utf-8"},
-    MediaType{".htm", "text/html; charset=utf-8"},
-    MediaType{".js", "text/javascript; charset=utf-8"},
-    MediaType{".mjs", "text/javascript; charset=utf-8"},
-    MediaType{".css", "text/css; charset=utf-8"},
-    MediaType{".json", "application/json"},
-    MediaType{".map", "application/json"},
-    MediaType{".webmanifest", "application/manifest+json"},
-    MediaType{".txt", "text/plain; charset=utf-8"},
-    MediaType{".md", "text/plain; charset=utf-8"},
-    MediaType{".csv", "text/csv; charset=utf-8"},
-    MediaType{".frag", "text/plain; charset=utf-8"},
-    MediaType{".vert", "text/plain; charset=utf-8"},
-    MediaType{".glsl", "text/plain; charset=utf-8"},
-    MediaType{".svg", "image/svg+xml"},
-    MediaType{".png", "image/png"},
-    MediaType{".jpg", "image/jpeg"},
-    MediaType{".jpeg", "image/jpeg"},
-    MediaType{".gif", "image/gif"},
-    MediaType{".webp", "image/webp"},
-    MediaType{".ico", "image/x-icon"},
-    MediaType{".woff", "font/woff"},
-    MediaType{".woff2", "font/woff2"},
-    MediaType{".ttf", "font/ttf"},
-    MediaType{".otf", "font/otf"},
-    MediaType{".wasm", "application/wasm"},
-    MediaType{".glb", "model/gltf-binary"},
-    MediaType{".gltf", "model/gltf+json"},
-    MediaType{".mp3", "audio/mpeg"},
-    MediaType{".ogg", "audio/ogg"},
-    MediaType{".wav", "audio/wav"},
-    MediaType{".mp4", "video/mp4"},
-    MediaType{".webm", "video/webm"},
-};
-
-std::string content_type_of(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  const auto* const found = std::ranges::find(kMediaTypes, extension, &MediaType::extension);
-  return std::string(found != kMediaTypes.end() ? found->type : "application/octet-stream");
-}
 
 /// A path with its %XX decoded (RFC 3986, 2.1); nullopt: there is a damaged one, or one of a zero.
 std::optional<std::string> decoded(std::string_view path) {
@@ -139,7 +91,7 @@ http::Response site_response(const fs::path& folder, const http::Request& reques
   const std::uintmax_t size = fs::file_size(file, error);
   const std::string entity_tag = error ? std::string() : entity_tag_of(file, size, error);
   if (error) return not_found(request);
-  http::Response response{.content_type = content_type_of(file),
+  http::Response response{.content_type = std::string(media_type_of(file).value_or("application/octet-stream")),
                           .fields = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", kPolicy}}};
   response.fields.emplace_back("ETag", entity_tag);
   if (request.if_none_match == entity_tag) {

@@ -20,7 +20,7 @@ class InstalledFilesTest : public testing::Test {
  protected:
   InstalledFilesTest() {
     for (const auto& [name, text] : {std::pair("index.html", "<p>all pages"), std::pair("sensors.html", "<p>sensors"),
-                                     std::pair("guide.css", "a {}"), std::pair("secret.txt", "secret")}) {
+                                     std::pair("guide.css", "a {}"), std::pair("secret.key", "secret")}) {
       std::ofstream(folder_ / name) << text;
     }
   }
@@ -38,7 +38,7 @@ TEST_F(InstalledFilesTest, HasThePagesOfItsFolder) {
 }
 TEST_F(InstalledFilesTest, ServesNoOtherFile) {
   const InstalledFiles guide(kGuide, folder_.path());
-  for (const char* path : {"/guide/secret.txt", "/guide/../secret.txt", "/guide//etc/passwd", "/guide/nothing.html"}) {
+  for (const char* path : {"/guide/secret.key", "/guide/../secret.key", "/guide//etc/passwd", "/guide/nothing.html"}) {
     EXPECT_EQ(guide.answer(get(path))->status, 404U) << path;
   }
   EXPECT_THAT(guide.answer(get("/guide/nothing.html"))->body, HasSubstr("nothing.html"));
