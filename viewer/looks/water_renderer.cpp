@@ -64,6 +64,7 @@ WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface, look::Quality
       hole_(gl::link_program("hole", gl::shaders::kHoleVert, gl::shaders::kHoleFrag)),
       reed_(gl::link_program("reed", gl::shaders::kReedVert, gl::shaders::kShadeFrag)),
       reed_rings_place_(glGetUniformLocation(reed_.name(), "rings")),
+      reed_first_corner_place_(glGetUniformLocation(reed_.name(), "first_corner")),
       mirror_share_place_(glGetUniformLocation(water_.name(), "mirror_share")),
       ripples_(gl::make_ripple_texture()),
       bed_texels_(quality == look::Quality::kLow ? kLowBedTexels : kBedTexels),
@@ -190,7 +191,7 @@ void WaterRenderer::make_shore() {
 
   const std::vector<meshes::Reed> reeds = meshes::reeds_of(shore_);
   reed_count_ = reeds.size();
-  fill(GL_TEXTURE_BUFFER, reed_buffer_, reeds);
+  reeds_.fill(std::span(reeds));
   gl::set_sampler(reed_, "reeds", gl::kStripsUnit);
 }
 
@@ -302,11 +303,9 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
 void WaterRenderer::draw_reeds(GLint rings) {
   glUseProgram(reed_.name());
   glUniform1i(reed_rings_place_, rings);
-  glActiveTexture(GL_TEXTURE0 + gl::kStripsUnit);
-  glBindTexture(GL_TEXTURE_BUFFER, reed_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, reed_buffer_.name());
+  reeds_.bind(gl::kStripsUnit);
   glActiveTexture(GL_TEXTURE0);
-  reed_strips_.draw(2 * (static_cast<std::size_t>(rings) + 1), reed_count_);
+  reed_strips_.draw(reed_first_corner_place_, 2 * (static_cast<std::size_t>(rings) + 1), 0, reed_count_);
 }
 
 const WaterRenderer::Sheet& WaterRenderer::sheet_in(const meshes::View& view) {
