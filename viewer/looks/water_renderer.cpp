@@ -214,8 +214,8 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   glActiveTexture(GL_TEXTURE0 + gl::kSlopesUnit);
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB16F, static_cast<GLsizei>(surface_->columns),
-               static_cast<GLsizei>(surface_->rows), 0, GL_RGB, GL_FLOAT, waves_.slopes().data());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, static_cast<GLsizei>(surface_->columns),
+               static_cast<GLsizei>(surface_->rows), 0, GL_RGBA, GL_FLOAT, waves_.slopes().data());
   gl::count_upload(waves_.slopes().size() * sizeof(float));
   glGenerateMipmap(GL_TEXTURE_2D);
   glActiveTexture(GL_TEXTURE0);
@@ -256,8 +256,8 @@ void WaterRenderer::sum_up_breaking() {
   constexpr float kAll = kBreakingAll * kBreakingAll;
   const std::vector<float>& slopes = waves_.slopes();
   for (std::size_t i = 0; i < cell_of_.size(); ++i) {
-    if (slopes[3 * i + 2] > kFrom)
-      breaking_[cell_of_[i]] += std::min((slopes[3 * i + 2] - kFrom) / (kAll - kFrom), 1.0F);
+    if (slopes[4 * i + 2] > kFrom)
+      breaking_[cell_of_[i]] += std::min((slopes[4 * i + 2] - kFrom) / (kAll - kFrom), 1.0F);
   }
   for (std::size_t i = 0; i < breaking_.size(); ++i) breaking_[i] /= points_per_cell_[i];
 }
@@ -283,7 +283,7 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
   glActiveTexture(GL_TEXTURE0 + gl::kWaterMemoryUnit);
   glBindTexture(GL_TEXTURE_2D, memory_texture_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(memory_.columns()),
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG16F, static_cast<GLsizei>(memory_.columns()),
                static_cast<GLsizei>(memory_.rows()), 0, GL_RG, GL_FLOAT, memory_.cells().data());
   gl::count_upload(memory_.cells().size_bytes());
   glActiveTexture(GL_TEXTURE0);
