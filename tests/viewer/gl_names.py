@@ -14,7 +14,6 @@ OLDEST = (3, 1)
 
 # The extensions that have what is used of newer versions, for older contexts.
 EXTENSION_OF = {
-    "GL_ARB_draw_elements_base_vertex": r"gl\w+BaseVertex",
     "GL_ARB_instanced_arrays": r"glVertexAttribDivisor",
     "GL_ARB_sampler_objects": r"gl(Gen|Delete|Bind|Is)Samplers?|gl(Get)?SamplerParameter\w+",
     "GL_ARB_sync": r"gl(Fence|Wait|ClientWait|Delete)Sync|GLsync|GL_SYNC_\w+|GL_TIMEOUT_IGNORED",

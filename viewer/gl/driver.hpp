@@ -28,8 +28,7 @@ struct NeededExtension {
 };
 inline constexpr std::array kNeededExtensions{
     NeededExtension{"GL_ARB_explicit_attrib_location", 33}, NeededExtension{"GL_ARB_shader_bit_encoding", 33},
-    NeededExtension{"GL_ARB_draw_elements_base_vertex", 32}, NeededExtension{"GL_ARB_instanced_arrays", 33},
-    NeededExtension{"GL_ARB_sampler_objects", 33}};
+    NeededExtension{"GL_ARB_instanced_arrays", 33}, NeededExtension{"GL_ARB_sampler_objects", 33}};
 
 /// A driver's own description.
 struct Driver {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstdio>
 #include <stdexcept>
 
 #include "viewer/gl/driver.hpp"
@@ -48,15 +47,7 @@ void compile(const Shader& shader, const std::string& name, std::string_view sou
                            " (10001 is line 1 of common.glsl):\n" + log.data());
 }
 
-std::atomic<int> error_count{0};
 std::atomic<std::size_t> upload_count{0};
-
-void GLAPIENTRY log_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
-                            const void*) {
-  if (type != GL_DEBUG_TYPE_ERROR && severity != GL_DEBUG_SEVERITY_HIGH) return;
-  ++error_count;
-  std::fprintf(stderr, "yuragi-viewer: OpenGL: %.*s\n", length, text);
-}
 
 }  // namespace
 
@@ -185,22 +176,6 @@ bool is_software_renderer() {
   if (renderer == nullptr) return false;
   const std::string_view name(renderer);
   return name.find("llvmpipe") != std::string_view::npos || name.find("softpipe") != std::string_view::npos;
-}
-
-bool is_context_lost() {
-  static const bool reports_reset = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
-  return reports_reset && glGetGraphicsResetStatus() != GL_NO_ERROR;
-}
-
-void report_gl_errors() {
-  if (!epoxy_has_gl_extension("GL_KHR_debug") && epoxy_gl_version() < 43) return;
-  glEnable(GL_DEBUG_OUTPUT);
-  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-  glDebugMessageCallback(log_message, nullptr);
-}
-
-int gl_error_count() {
-  return error_count;
 }
 
 }  // namespace yuragi::viewer::gl

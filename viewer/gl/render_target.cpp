@@ -55,7 +55,6 @@ void RenderTarget::set_drawn_side(float part) {
 void RenderTarget::begin() {
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
   glViewport(0, 0, drawn_width_px_, drawn_height_px_);
-  glEnable(GL_MULTISAMPLE);
 }
 
 void RenderTarget::resolve() {
@@ -80,18 +79,18 @@ void RenderTarget::show(int window_width_px, int window_height_px) {
 }
 
 std::vector<std::uint8_t> RenderTarget::read_rgb() {
-  const auto row_bytes = static_cast<std::size_t>(width_px_) * 3;
+  const auto columns = static_cast<std::size_t>(width_px_);
   const auto rows = static_cast<std::size_t>(height_px_);
-  std::vector<std::uint8_t> upside_down(row_bytes * rows);
+  std::vector<std::uint8_t> rgba(4 * columns * rows);  // OpenGL ES gives no fewer numbers a pixel
   glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.name());
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, width_px_, height_px_, GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+  glReadPixels(0, 0, width_px_, height_px_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
 
   // OpenGL's first row is the lowest.
-  std::vector<std::uint8_t> picture(upside_down.size());
-  for (std::size_t row = 0; row < rows; ++row) {
-    std::copy_n(upside_down.begin() + static_cast<std::ptrdiff_t>((rows - 1 - row) * row_bytes), row_bytes,
-                picture.begin() + static_cast<std::ptrdiff_t>(row * row_bytes));
+  std::vector<std::uint8_t> picture(3 * columns * rows);
+  std::uint8_t* to = picture.data();
+  for (std::size_t row = rows; row-- > 0;) {
+    const std::uint8_t* from = &rgba[4 * columns * row];
+    for (std::size_t column = 0; column < columns; ++column, from += 4, to += 3) std::copy_n(from, 3, to);
   }
   return picture;
 }

@@ -21,11 +21,13 @@ ShadowMap::ShadowMap(int texels) : texels_(texels) {
   }
   glSamplerParameteri(compared_.name(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glSamplerParameteri(compared_.name(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  glBindTexture(GL_TEXTURE_2D, 0);  // until end() there are no depths, nor a sampler that compares with them
   glActiveTexture(GL_TEXTURE0);
 
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_TEXTURE_2D, depth_.name(), 0);
-  glDrawBuffer(GL_NONE);
+  constexpr GLenum kNone = GL_NONE;
+  glDrawBuffers(1, &kNone);
   glReadBuffer(GL_NONE);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
     throw std::runtime_error("the graphics driver cannot draw shadows into a texture");

@@ -183,7 +183,7 @@ void FlameRenderer::move_to(const pose::Pose& pose) {
                  GL_UNSIGNED_BYTE, gas_->texels().data());
     gl::count_upload(gas_->texels().size_bytes());
     glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, layers, 0, GL_RGBA, GL_FLOAT, volume_.layer_rows().data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, 2, layers, 0, GL_RGBA, GL_FLOAT, volume_.layer_rows().data());
     gl::count_upload(volume_.layer_rows().size_bytes());
     gl::stream_to(GL_ARRAY_BUFFER, hull_buffer_, volume_.hull());
     gl::stream_to(GL_ARRAY_BUFFER, spark_buffer_, sparks_.all());

@@ -7,8 +7,6 @@
 #include "viewer/meshes/sward.hpp"
 
 namespace yuragi::viewer::looks {
-namespace {}  // namespace
-
 GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::GrassDetail& detail)
     : detail_(detail),
       thinning_{.blades_per_m2 = meshes::stand_of(strands).blades_per_m2,
@@ -21,9 +19,8 @@ GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::
   gl::set_sampler(program_, "blades", gl::kBladesUnit);
   gl::set_sampler(program_, "blocks", gl::kTilesUnit);
   glUniform1f(glGetUniformLocation(program_.name(), "reach_m"), detail.reach_m);
-  glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
-  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(tiles_.blades().size_bytes()), tiles_.blades().data(),
-               GL_STATIC_DRAW);
+  first_corner_place_ = glGetUniformLocation(program_.name(), "first_corner");
+  blades_.fill(tiles_.blades());
   glBindVertexArray(array_.name());
   for (std::size_t level = 0; level < triangles_.size(); ++level) {
     const std::vector<std::uint32_t> triangles =
@@ -46,33 +43,24 @@ void GrassRenderer::set_blade_share(float share) {
 void GrassRenderer::draw(const meshes::View& view) {
   tiles_.choose(view);
   if (tiles_.blocks().empty() || latest_ == nullptr) return;
-  gl::stream_to(GL_TEXTURE_BUFFER, bend_buffer_, tiles_.bends(*latest_));
-  gl::stream_to(GL_TEXTURE_BUFFER, block_buffer_, tiles_.blocks());
+  bends_.fill(tiles_.bends(*latest_));
+  blocks_.fill(tiles_.blocks());
   glUseProgram(program_.name());
   glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
-  const auto bind = [](GLint unit, GLenum format, const gl::Texture& texture, const gl::Buffer& buffer) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_BUFFER, texture.name());
-    glTexBuffer(GL_TEXTURE_BUFFER, format, buffer.name());
-  };
-  bind(gl::kBladesUnit, GL_RGBA32F, blade_texture_, blade_buffer_);
-  bind(gl::kTilesUnit, GL_R32UI, block_texture_, block_buffer_);
-  bind(0, GL_RG32F, bend_texture_, bend_buffer_);
+  blades_.bind(gl::kBladesUnit);
+  blocks_.bind(gl::kTilesUnit);
+  bends_.bind(0);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const meshes::StrandTiles::Level& level = tiles_.levels()[i];
     if (level.tiles.empty()) continue;
-    counts_.clear();
-    first_corners_.clear();
-    for (const meshes::StrandTiles::Drawn& tile : level.tiles) {
-      counts_.push_back(static_cast<GLsizei>(tile.strands * 3 * (2 * level.rings - 1)));
-      first_corners_.push_back(static_cast<GLint>(tile.first_slot * (2 * level.rings + 1)));
-    }
-    offsets_.assign(level.tiles.size(), nullptr);
     glUniform1i(glGetUniformLocation(program_.name(), "rings"), static_cast<GLint>(level.rings));
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[i].name());
-    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
-                                  static_cast<GLsizei>(counts_.size()), first_corners_.data());
+    for (const meshes::StrandTiles::Drawn& tile : level.tiles) {
+      glUniform1i(first_corner_place_, static_cast<GLint>(tile.first_slot * (2 * level.rings + 1)));
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(tile.strands * 3 * (2 * level.rings - 1)), GL_UNSIGNED_INT,
+                     nullptr);
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/texel_buffer.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/ground_map.hpp"
 #include "viewer/meshes/strand_tiles.hpp"
@@ -28,12 +29,9 @@ class GrassRenderer : public SceneRenderer {
   const pose::StrandPose* latest_ = nullptr;  ///< of the picture being drawn
   gl::Program program_;
   gl::VertexArray array_;
-  gl::Buffer blade_buffer_, bend_buffer_, block_buffer_;
-  gl::Texture blade_texture_, bend_texture_, block_texture_;
+  GLint first_corner_place_ = -1;
+  gl::TexelBuffer blades_{GL_RGBA32F}, bends_{GL_RG32F}, blocks_{GL_R32UI};
   std::vector<gl::Buffer> triangles_;  ///< of each level of detail
-  std::vector<GLsizei> counts_;
-  std::vector<const void*> offsets_;
-  std::vector<GLint> first_corners_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -95,7 +95,7 @@ void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* n
   ground_.bends_axes = {to_parts[0], to_parts[1]};
   ground_.bend_mean = {mean, 0.0F, 0.0F};
   glBindTexture(GL_TEXTURE_2D, bends_.name());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(columns_), static_cast<GLsizei>(rows_), 0, GL_RG,
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG16F, static_cast<GLsizei>(columns_), static_cast<GLsizei>(rows_), 0, GL_RG,
                GL_FLOAT, texels_.data());
 }
 

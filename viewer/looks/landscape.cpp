@@ -57,13 +57,9 @@ Landscape::Landscape()
   gl::set_sampler(hills_, "corners", gl::kTilesUnit);
   range_place_ = glGetUniformLocation(hills_.name(), "range");
   every_place_ = glGetUniformLocation(hills_.name(), "every");
-  for (std::size_t range = 0; range < ranges_.size(); ++range) {
+  for (std::size_t range = 0; range < meshes::kFarRanges.size(); ++range) {
     const std::vector<meshes::FarCorner> corners = meshes::far_corners(range);
-    glBindBuffer(GL_TEXTURE_BUFFER, ranges_.at(range).corners.name());
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::span(corners).size_bytes()), corners.data(),
-                 GL_STATIC_DRAW);
-    glBindTexture(GL_TEXTURE_BUFFER, ranges_.at(range).texture.name());
-    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, ranges_.at(range).corners.name());
+    ranges_.emplace_back(GL_RGBA32F).fill(std::span(corners));
   }
 }
 
@@ -103,8 +99,7 @@ void Landscape::draw_far_country(const meshes::View& view) {
     const float step_rad = glm::two_pi<float>() / static_cast<float>(around);
     glUniform1i(range_place_, static_cast<GLint>(range));
     glUniform1i(every_place_, every);
-    glActiveTexture(GL_TEXTURE0 + gl::kTilesUnit);
-    glBindTexture(GL_TEXTURE_BUFFER, ranges_.at(range).texture.name());
+    ranges_[range].bind(gl::kTilesUnit);
     const auto first = static_cast<GLint>(arc->from_rad / step_rad) % around;
     const auto count = static_cast<GLsizei>(std::ceil(arc->size_rad / step_rad)) + 2;
     // More than half of the circle: all of it.

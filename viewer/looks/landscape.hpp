@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "engine/look/cloth_look.hpp"
 #include "engine/look/look.hpp"
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/texel_buffer.hpp"
 #include "viewer/light/light.hpp"
 #include "viewer/looks/cloud_map.hpp"
 #include "viewer/looks/small_sky.hpp"
@@ -53,11 +54,7 @@ class Landscape {
   float image_share_ = 0.0F;
   gl::Program hills_;
   GLint range_place_ = -1, every_place_ = -1;
-  struct Range {
-    gl::Buffer corners;
-    gl::Texture texture;
-  };
-  std::array<Range, meshes::kFarRanges.size()> ranges_;
+  std::vector<gl::TexelBuffer> ranges_;  // corners of each of kFarRanges
   gl::Program sky_;
   std::optional<SmallSky> small_sky_{std::in_place};  // with low quality
   gl::VertexArray no_attributes_;

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/pose/strand_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/strip_indices.hpp"
+#include "viewer/gl/texel_buffer.hpp"
 #include "viewer/meshes/blades.hpp"
 #include "viewer/meshes/view.hpp"
 
@@ -12,8 +15,8 @@ namespace yuragi::viewer::looks {
 /// current context.
 ///
 /// A shader finds the Blades in the sampler `blades` (kStripsUnit), the joints in the sampler `joints` (unit 0, see
-/// shaders/picture/common.glsl), and the uniforms `links`, `rings` and `copies`: strip i (StripIndices) is ribbon i %
-/// copies of Blade i / copies.
+/// shaders/picture/common.glsl), and the uniforms `links`, `rings`, `copies` and `first_corner`: strip i (StripIndices)
+/// is ribbon i % copies of Blade i / copies.
 class StrandRibbons {
  public:
   /// `strands` must outlive this. Each is drawn as `copies` ribbons.
@@ -33,10 +36,9 @@ class StrandRibbons {
   GLint copies_;
   meshes::BladeSorter sorter_;
   pose::JointPositions joints_;
-  gl::Buffer joint_buffer_;
-  gl::Texture joint_texture_;
-  gl::Buffer blade_buffer_;
-  gl::Texture blade_texture_;
+  gl::TexelBuffer joints_on_gpu_{GL_R32F};
+  gl::TexelBuffer blades_on_gpu_{GL_RGBA32F};
+  std::vector<meshes::Blade> blades_;  // of all levels, one behind the other
   gl::StripIndices strips_;
 };
 

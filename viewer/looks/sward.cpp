@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "viewer/gl/shaders.hpp"
 #include "viewer/looks/ground_maps.hpp"
@@ -79,10 +80,8 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& d
   glUniform1f(place("tall"), kind == Kind::kTall ? 1.0F : 0.0F);
 
   const std::vector<meshes::SwardBlade> blades = meshes::sward_blades(blades_per_tile_);
-  glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
-  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::span(blades).size_bytes()), blades.data(),
-               GL_STATIC_DRAW);
-  glBindBuffer(GL_TEXTURE_BUFFER, tile_buffer_.name());
+  blades_.fill(std::span(blades));
+  first_corner_place_ = place("first_corner");
   glBindVertexArray(array_.name());
   for (std::size_t level = 0; level < triangles_.size(); ++level) {
     const std::vector<std::uint32_t> triangles = meshes::ribbon_triangles(blades_per_tile_, rings_of(level));
@@ -104,29 +103,27 @@ void Sward::draw(const meshes::View& view, const meshes::GrowthMap& growth) {
   glUseProgram(program_.name());
   glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
-  glActiveTexture(GL_TEXTURE0 + gl::kBladesUnit);
-  glBindTexture(GL_TEXTURE_BUFFER, blade_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, blade_buffer_.name());
-  glActiveTexture(GL_TEXTURE0 + gl::kTilesUnit);
-  glBindTexture(GL_TEXTURE_BUFFER, tile_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, tile_buffer_.name());
+  drawn_.clear();
+  for (std::size_t level = 0; level < triangles_.size(); ++level) {
+    drawn_.insert(drawn_.end(), tiles_.level(level).begin(), tiles_.level(level).end());
+  }
+  tiles_on_gpu_.fill(std::span(std::as_const(drawn_)));
+  blades_.bind(gl::kBladesUnit);
+  tiles_on_gpu_.bind(gl::kTilesUnit);
   glActiveTexture(GL_TEXTURE0);
+  std::size_t slot = 0;
   for (std::size_t level = 0; level < triangles_.size(); ++level) {
     const std::span<const meshes::SwardTile> tiles = tiles_.level(level);
     if (tiles.empty()) continue;
     const std::size_t rings = rings_of(level);
-    gl::stream_to(GL_TEXTURE_BUFFER, tile_buffer_, tiles);
-    counts_.clear();
-    first_corners_.clear();
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-      counts_.push_back(static_cast<GLsizei>(static_cast<std::size_t>(tiles[i].blades) * 3 * (2 * rings - 1)));
-      first_corners_.push_back(static_cast<GLint>(i * blades_per_tile_ * (2 * rings + 1)));
-    }
-    offsets_.assign(tiles.size(), nullptr);
     glUniform1i(glGetUniformLocation(program_.name(), "rings"), static_cast<GLint>(rings));
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[level].name());
-    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
-                                  static_cast<GLsizei>(tiles.size()), first_corners_.data());
+    for (const meshes::SwardTile& tile : tiles) {
+      glUniform1i(first_corner_place_, static_cast<GLint>(slot * blades_per_tile_ * (2 * rings + 1)));
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(static_cast<std::size_t>(tile.blades) * 3 * (2 * rings - 1)),
+                     GL_UNSIGNED_INT, nullptr);
+      ++slot;
+    }
   }
 }
 

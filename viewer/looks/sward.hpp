@@ -5,6 +5,7 @@
 
 #include "engine/look/look.hpp"
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/texel_buffer.hpp"
 #include "viewer/meshes/ground_map.hpp"
 #include "viewer/meshes/sward.hpp"
 
@@ -32,12 +33,10 @@ class Sward {
   meshes::SwardTiles tiles_;
   gl::Program program_;
   gl::VertexArray array_;
-  gl::Buffer blade_buffer_, tile_buffer_;
-  gl::Texture blade_texture_, tile_texture_;
+  GLint first_corner_place_ = -1;
+  gl::TexelBuffer blades_{GL_RGBA32F}, tiles_on_gpu_{GL_RGBA32F};
   std::array<gl::Buffer, meshes::SwardTiles::kLevels> triangles_;
-  std::vector<GLsizei> counts_;
-  std::vector<const void*> offsets_;
-  std::vector<GLint> first_corners_;
+  std::vector<meshes::SwardTile> drawn_;  ///< tiles of all levels, one behind the other
 };
 
 }  // namespace yuragi::viewer::looks

@@ -277,7 +277,6 @@ std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::trees::
     tree->crowns.push_back(first == nullptr ? meshes::trees::Crown(*tree_, foliages_[i]->level, foliages_[i]->color)
                                             : first->crowns[i]);
   }
-  glBindBuffer(GL_TEXTURE_BUFFER, tree->joint_buffer.name());  // creates the buffer, even if no pose is ever taken
   return tree;
 }
 
@@ -342,16 +341,10 @@ void TreeRenderer::move(Alike& alike, float hanging_leaves) {
   }
   for (meshes::trees::Branches& branches : alike.branches) branches.move_to(alike.joints);
 
-  // The wood's joints, level behind level, in a new buffer each time, since the GPU may still read the old one.
-  glBindBuffer(GL_TEXTURE_BUFFER, alike.joint_buffer.name());
-  const std::size_t count = meshes::trees::first_joint_at(*tree_, tree_->levels.size());
-  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(count * sizeof(float)), nullptr, GL_STREAM_DRAW);
+  alike.joints_on_gpu.begin(meshes::trees::first_joint_at(*tree_, tree_->levels.size()));
   for (const auto& wood : woods_) {
-    const std::span<const float> joints = std::as_const(alike.joints).level(wood->level).data();
-    glBufferSubData(GL_TEXTURE_BUFFER,
-                    static_cast<GLintptr>(meshes::trees::first_joint_at(*tree_, wood->level) * sizeof(float)),
-                    static_cast<GLsizeiptr>(joints.size_bytes()), joints.data());
-    gl::count_upload(joints.size_bytes());
+    alike.joints_on_gpu.write(meshes::trees::first_joint_at(*tree_, wood->level),
+                              std::span(std::as_const(alike.joints).level(wood->level).data()));
   }
 }
 
@@ -448,9 +441,7 @@ void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view,
   if (!alike.is_moved) move(alike, moment_.hanging_leaves);
   // The light in a tree that was bare before, or blossoms, does not change.
   const float leafy = loses_leaves(*tree_) ? hanging : 1.0F;
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_BUFFER, alike.joint_texture.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, alike.joint_buffer.name());
+  alike.joints_on_gpu.bind(0);
   for (std::size_t i = 0; i < woods_.size(); ++i) {
     alike.branches[i].choose(view, ring_px, place);
     glUseProgram(programs.bark.name());

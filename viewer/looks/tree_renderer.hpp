@@ -6,6 +6,7 @@
 
 #include "engine/pose/tree_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/texel_buffer.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/tree_impostors.hpp"
 #include "viewer/meshes/bounds.hpp"
@@ -77,8 +78,7 @@ class TreeRenderer : public SceneRenderer {
     pose::TreeJoints joints;
     std::vector<meshes::trees::Branches> branches;  // of woods_
     std::vector<meshes::trees::Crown> crowns;       // of foliages_
-    gl::Buffer joint_buffer = {};
-    gl::Texture joint_texture = {};
+    gl::TexelBuffer joints_on_gpu{GL_R32F};         // of the wood, level behind level
   };
 
   void add_place(const meshes::trees::Place& place);

@@ -64,6 +64,7 @@ WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface, look::Quality
       hole_(gl::link_program("hole", gl::shaders::kHoleVert, gl::shaders::kHoleFrag)),
       reed_(gl::link_program("reed", gl::shaders::kReedVert, gl::shaders::kShadeFrag)),
       reed_rings_place_(glGetUniformLocation(reed_.name(), "rings")),
+      reed_first_corner_place_(glGetUniformLocation(reed_.name(), "first_corner")),
       mirror_share_place_(glGetUniformLocation(water_.name(), "mirror_share")),
       ripples_(gl::make_ripple_texture()),
       bed_texels_(quality == look::Quality::kLow ? kLowBedTexels : kBedTexels),
@@ -190,7 +191,7 @@ void WaterRenderer::make_shore() {
 
   const std::vector<meshes::Reed> reeds = meshes::reeds_of(shore_);
   reed_count_ = reeds.size();
-  fill(GL_TEXTURE_BUFFER, reed_buffer_, reeds);
+  reeds_.fill(std::span(reeds));
   gl::set_sampler(reed_, "reeds", gl::kStripsUnit);
 }
 
@@ -213,8 +214,8 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   glActiveTexture(GL_TEXTURE0 + gl::kSlopesUnit);
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB16F, static_cast<GLsizei>(surface_->columns),
-               static_cast<GLsizei>(surface_->rows), 0, GL_RGB, GL_FLOAT, waves_.slopes().data());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, static_cast<GLsizei>(surface_->columns),
+               static_cast<GLsizei>(surface_->rows), 0, GL_RGBA, GL_FLOAT, waves_.slopes().data());
   gl::count_upload(waves_.slopes().size() * sizeof(float));
   glGenerateMipmap(GL_TEXTURE_2D);
   glActiveTexture(GL_TEXTURE0);
@@ -255,8 +256,8 @@ void WaterRenderer::sum_up_breaking() {
   constexpr float kAll = kBreakingAll * kBreakingAll;
   const std::vector<float>& slopes = waves_.slopes();
   for (std::size_t i = 0; i < cell_of_.size(); ++i) {
-    if (slopes[3 * i + 2] > kFrom)
-      breaking_[cell_of_[i]] += std::min((slopes[3 * i + 2] - kFrom) / (kAll - kFrom), 1.0F);
+    if (slopes[4 * i + 2] > kFrom)
+      breaking_[cell_of_[i]] += std::min((slopes[4 * i + 2] - kFrom) / (kAll - kFrom), 1.0F);
   }
   for (std::size_t i = 0; i < breaking_.size(); ++i) breaking_[i] /= points_per_cell_[i];
 }
@@ -282,7 +283,7 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
   glActiveTexture(GL_TEXTURE0 + gl::kWaterMemoryUnit);
   glBindTexture(GL_TEXTURE_2D, memory_texture_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(memory_.columns()),
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG16F, static_cast<GLsizei>(memory_.columns()),
                static_cast<GLsizei>(memory_.rows()), 0, GL_RG, GL_FLOAT, memory_.cells().data());
   gl::count_upload(memory_.cells().size_bytes());
   glActiveTexture(GL_TEXTURE0);
@@ -302,11 +303,9 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
 void WaterRenderer::draw_reeds(GLint rings) {
   glUseProgram(reed_.name());
   glUniform1i(reed_rings_place_, rings);
-  glActiveTexture(GL_TEXTURE0 + gl::kStripsUnit);
-  glBindTexture(GL_TEXTURE_BUFFER, reed_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, reed_buffer_.name());
+  reeds_.bind(gl::kStripsUnit);
   glActiveTexture(GL_TEXTURE0);
-  reed_strips_.draw(2 * (static_cast<std::size_t>(rings) + 1), reed_count_);
+  reed_strips_.draw(reed_first_corner_place_, 2 * (static_cast<std::size_t>(rings) + 1), 0, reed_count_);
 }
 
 const WaterRenderer::Sheet& WaterRenderer::sheet_in(const meshes::View& view) {

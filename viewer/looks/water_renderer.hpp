@@ -5,6 +5,7 @@
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/strip_indices.hpp"
+#include "viewer/gl/texel_buffer.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/water_memory.hpp"
 #include "viewer/meshes/shore.hpp"
@@ -52,14 +53,15 @@ class WaterRenderer : public SceneRenderer {
   GLsizei hole_count_ = 0, bank_count_ = 0;
   std::size_t reed_count_ = 0;
   gl::Program water_, bed_, bank_, hole_, reed_;
-  GLint reed_rings_place_, mirror_share_place_;
-  gl::Texture slopes_, ripples_, reed_texture_;
+  GLint reed_rings_place_, reed_first_corner_place_, mirror_share_place_;
+  gl::Texture slopes_, ripples_;
+  gl::TexelBuffer reeds_{GL_RGBA32F};
   gl::VertexArray hole_array_, bank_array_;
   std::array<Sheet, kSteps.size()> sheets_;
   std::size_t level_ = 0;  // index into sheets_, of the last picture
   float cell_m_ = 0.0F;
   gl::Buffer rest_buffer_, height_buffer_;
-  gl::Buffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
+  gl::Buffer bank_buffer_, hole_indices_, bank_indices_;
   gl::StripIndices reed_strips_;
   GLint lee_place_ = -1, streaks_place_ = -1;
   Moment moment_;

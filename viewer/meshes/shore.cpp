@@ -174,7 +174,7 @@ WaveSlopes::WaveSlopes(const pose::SurfaceSkeleton& surface, const Shore& shore)
     : columns_(surface.columns), rows_(surface.rows), along_per_m_(0.0F), across_per_m_(0.0F) {
   const std::size_t count = columns_ * rows_;
   heights_m_.assign(count, 0.0F);
-  slopes_.assign(3 * count, 0.0F);
+  slopes_.assign(4 * count, 0.0F);
   if (!shore.is_pond()) return;
   along_per_m_ = shore.along() * (0.25F * static_cast<float>(columns_ - 1) / shore.half_m().x);
   across_per_m_ = shore.across() * (0.25F * static_cast<float>(rows_ - 1) / shore.half_m().y);
@@ -198,9 +198,9 @@ void WaveSlopes::move_to(const float* y_m) {
       const std::size_t right = column + 1 < columns_ ? 1 : 0;
       const glm::vec2 slope = along_per_m_ * (heights_m_[i + right] - heights_m_[i - left]) +
                               across_per_m_ * (heights_m_[i + down] - heights_m_[i - up]);
-      slopes_[3 * i] = slope.x;
-      slopes_[3 * i + 1] = slope.y;
-      slopes_[3 * i + 2] = glm::dot(slope, slope);
+      slopes_[4 * i] = slope.x;
+      slopes_[4 * i + 1] = slope.y;
+      slopes_[4 * i + 2] = glm::dot(slope, slope);
     }
   }
 }

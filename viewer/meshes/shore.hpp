@@ -85,8 +85,8 @@ struct Reed {
 /// In tufts that grow in groups along parts of the shore. Empty without a pond.
 std::vector<Reed> reeds_of(const Shore& shore);
 
-/// The slope of a pond's waves at each point of its grid, given the heights `y_m`: along x, along z, and the sum of
-/// both squares; three numbers per point.
+/// The slope of a pond's waves at each point of its grid, given the heights `y_m`: along x, along z, the sum of
+/// both squares, and 0; four numbers per point, the texels of a texture.
 class WaveSlopes {
  public:
   WaveSlopes(const pose::SurfaceSkeleton& surface, const Shore& shore);

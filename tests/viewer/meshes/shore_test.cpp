@@ -129,9 +129,9 @@ TEST(WaveSlopes, AreTheSlopesOfAPlaneAndLessAtTheShore) {
   waves.move_to(heights_m.data());
   const std::size_t middle = 15 * 41 + 20;
   EXPECT_NEAR(waves.heights_m()[middle], -Shore::kSunk_m, 1e-5F);
-  EXPECT_NEAR(waves.slopes()[3 * middle], 0.1F, 1e-4F);
-  EXPECT_NEAR(waves.slopes()[3 * middle + 1], -0.05F, 1e-4F);
-  EXPECT_NEAR(waves.slopes()[3 * middle + 2], 0.0125F, 1e-4F);
+  EXPECT_NEAR(waves.slopes()[4 * middle], 0.1F, 1e-4F);
+  EXPECT_NEAR(waves.slopes()[4 * middle + 1], -0.05F, 1e-4F);
+  EXPECT_NEAR(waves.slopes()[4 * middle + 2], 0.0125F, 1e-4F);
   // In the corner is land: what is left there of a height of 0.55 m.
   EXPECT_NEAR(waves.heights_m()[40] + Shore::kSunk_m, 0.15F * heights_m[40], 1e-4F);
 }

@@ -4,6 +4,7 @@
 // Its light after J. Kajiya and T. Kay 1989, "Rendering fur with three dimensional textures", with the two highlights of S.
 // Marschner and others 2003, "Light scattering from human hair fibers": that of the surface, moved to the root, and that
 // from within, coloured and moved to the tip.
+uniform int first_corner;
 uniform int rings;
 uniform int copies;  // hairs a strand
 uniform vec3 body_middle_m;
@@ -24,7 +25,8 @@ float lobe(vec3 along, vec3 half_way, float sharpness) {
 }
 
 void main() {
-  int ribbon = gl_VertexID >> 8;
+  int number = first_corner + gl_VertexID;
+  int ribbon = number >> 8;
   int blade = ribbon / copies;
   int copy = ribbon - blade * copies;
   vec4 root_width = fetch(blades, 3 * blade);
@@ -32,8 +34,8 @@ void main() {
   vec3 traits = fetch(blades, 3 * blade + 2).xyz;
   uint strand = uint(traits.x);
   float whole_m = traits.y;
-  int ring = (gl_VertexID & 255) >> 1;
-  float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  int ring = (number & 255) >> 1;
+  float side = float(number & 1) * 2.0 - 1.0;
   float t = float(ring) / float(rings);
   float seed = float(copy) + 1.0;
   float which = chance_of(seed, strand);

@@ -1,14 +1,16 @@
 #include "sward.part.glsl"
 #include "blade.part.glsl"
 // A streamed blade. Slots of drawn blades come in blocks of 16, as their bends do.
+uniform int first_corner;
 uniform Numbers blades;          // three texels a blade: TiledBlade
 uniform Numbers streamed_bends;  // of the slots: east, south, radians
-uniform WholeNumbers blocks;         // of the slots: the number of each block
-uniform float thinning;                // Thinning::factor()
+uniform WholeNumbers blocks;     // of the slots: the number of each block
+uniform float thinning;          // Thinning::factor()
 
 void main() {
   int corners = 2 * rings + 1;
-  int slot = gl_VertexID / corners;
+  int number = first_corner + gl_VertexID;
+  int slot = number / corners;
   int blade = int(fetch(blocks, slot >> 4).r) * 16 + (slot & 15);
   vec4 root_length = fetch(blades, 3 * blade);
   vec4 traits = fetch(blades, 3 * blade + 2);  // width, bearing of the flat side, chance, rank
@@ -27,6 +29,6 @@ void main() {
   vec2 turned = rest.zw + fetch(streamed_bends, slot).rg;
   // The viewer's own waves do not move streamed blades.
   vec2 around = bends_place.z > 0.0 ? bend_mean.xy : bend_at(root_length.xz);
-  put_corner(gl_VertexID - slot * corners, root_length.xyz, root_length.w * is_up, rest.xy, turned, traits.x * pow(share, -0.7) * is_up,
+  put_corner(number - slot * corners, root_length.xyz, root_length.w * is_up, rest.xy, turned, traits.x * pow(share, -0.7) * is_up,
              traits.y, traits.z, patches(root_length.xz, 0.0), around, 1.0);
 }

@@ -1,16 +1,18 @@
 #include "sward.part.glsl"
 // A reed: a ribbon that leans and droops, and bends with the grass around. Some bear a brown head.
+uniform int first_corner;
 uniform int rings;
 uniform Numbers reeds;  // two texels each: root, length, metres; heading, lean, radians, width, metres, chance
 
 out vec3 shade;
 
 void main() {
-  int reed = gl_VertexID >> 8;
+  int number = first_corner + gl_VertexID;
+  int reed = number >> 8;
   vec4 root_length = fetch(reeds, 2 * reed);
   vec4 traits = fetch(reeds, 2 * reed + 1);
-  int ring = (gl_VertexID & 255) >> 1;
-  float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  int ring = (number & 255) >> 1;
+  float side = float(number & 1) * 2.0 - 1.0;
   float t = float(ring) / float(rings);
   bool is_mace = traits.w > 0.90;
   vec2 heading = vec2(sin(traits.x), -cos(traits.x));

@@ -2,6 +2,7 @@
 #include "blade.part.glsl"
 // A blade of the sward around the streamed ones. Tiles repeat the same blades, each tile turned in its own way; how they
 // bend, how tall they are and what colour they have depends on where they stand.
+uniform int first_corner;
 uniform Numbers blades;   // two texels a blade of the tile: SwardBlade
 uniform Numbers tiles;    // SwardTile
 uniform int blades_per_tile;
@@ -12,10 +13,11 @@ uniform float tall;       // 1: tall grass; 0: a lawn
 
 void main() {
   int corners = 2 * rings + 1;
-  int number = gl_VertexID / corners;
-  int corner = gl_VertexID - number * corners;
-  int slot = number / blades_per_tile;
-  int blade = number - slot * blades_per_tile;
+  int number = first_corner + gl_VertexID;
+  int place = number / corners;
+  int corner = number - place * corners;
+  int slot = place / blades_per_tile;
+  int blade = place - slot * blades_per_tile;
   vec4 tile = fetch(tiles, slot);
   vec4 form = fetch(blades, 2 * blade);        // x, z, facing, height
   vec4 traits = fetch(blades, 2 * blade + 1);  // heading, chance, droop, sway

@@ -15,19 +15,11 @@ precision highp usampler2D;
 #extension GL_ARB_shader_bit_encoding : require
 #endif
 
-// Arrays of numbers, and the element `at` of one. GLSL ES 3.00 has no buffer textures: there an array lies in a texture
-// that is 1024 texels wide, row by row.
-#ifdef GL_ES
+// Arrays of numbers, and the element `at` of one: gl::TexelBuffer, a texture that is 1024 texels wide, row behind row.
 #define Numbers sampler2D
 #define WholeNumbers usampler2D
 vec4 fetch(Numbers numbers, int at) { return texelFetch(numbers, ivec2(at & 1023, at >> 10), 0); }
 uvec4 fetch(WholeNumbers numbers, int at) { return texelFetch(numbers, ivec2(at & 1023, at >> 10), 0); }
-#else
-#define Numbers samplerBuffer
-#define WholeNumbers usamplerBuffer
-vec4 fetch(Numbers numbers, int at) { return texelFetch(numbers, at); }
-uvec4 fetch(WholeNumbers numbers, int at) { return texelFetch(numbers, at); }
-#endif
 
 layout(std140) uniform View {
   mat4 to_clip;
