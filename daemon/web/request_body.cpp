@@ -161,6 +161,7 @@ Result<SocketWish, Failure> socket_wish_of(std::string_view json) {
   if (auto stream = body.below("stream")) {
     wish.stream.emplace();
     wish.stream->takes_new_scenes = true;
+    wish.stream->sensors = stream->flag("sensors", false);
     wish.stream->thinning.scenes = stream->texts("scenes", wire::kMaxScenes);
     wish.stream->thinning.every = static_cast<std::uint32_t>(stream->number("every", 1.0, 1.0, wire::kMaxEvery));
     wish.stream->rate_hz = stream->number("rate", 0.0, 0.0, wire::kMaxRate_hz);

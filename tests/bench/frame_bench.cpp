@@ -135,7 +135,7 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   std::optional<gl::EdgeSmoother> smoother;  // as GlRenderer has it
   if (options.quality == "low" && target.samples() == 1) smoother.emplace();
   gl::PassClock clock(gl::is_software_renderer() ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
-  stage.time_passes_with(&clock);
+  stage.mark_passes_for(&clock);
   struct PassCosts {
     std::vector<double> times_ms, thread_ms, uploads_mb, triangles;
   };
@@ -156,7 +156,7 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
       costs.triangles.push_back(static_cast<double>(pass.triangles));
     }
   }
-  stage.time_passes_with(nullptr);
+  stage.mark_passes_for(nullptr);
 
   // What comes before: the moment between two frames of the stream.
   std::vector<double> blends_ms;

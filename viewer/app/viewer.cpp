@@ -298,7 +298,7 @@ class Viewer::Show {
 
   void toggle_profiler() {
     has_profiler_ = !has_profiler_;
-    renderer_->stage().time_passes_with(has_profiler_ ? &*pass_clock_ : nullptr);
+    renderer_->stage().mark_passes_for(has_profiler_ ? &*pass_clock_ : nullptr);
   }
 
   void use_key(const Key& key) {

@@ -8,6 +8,8 @@
 
 #include <epoxy/gl.h>
 
+#include "viewer/gl/pass_marks.hpp"
+
 namespace yuragi::viewer::gl {
 
 /// Measures the cost of each pass of a picture. It waits, so it slows the picture.
@@ -15,19 +17,17 @@ namespace yuragi::viewer::gl {
 /// On a GPU: by timestamps between the passes (GL_TIMESTAMP), read when the picture is done; before OpenGL 3.3, where
 /// they may be missing, it waits for each pass and uses the clock. If the processor draws (which otherwise draws all
 /// passes together at the end): it waits for each pass, whose time is that of all threads of the process.
-class PassClock {
+class PassClock final : public PassMarks {
  public:
   enum class By : std::uint8_t { kGpu, kProcessor };
   /// Needs a current context.
   explicit PassClock(By by);
-  ~PassClock();
+  ~PassClock() override;
   PassClock(const PassClock&) = delete;
   PassClock& operator=(const PassClock&) = delete;
 
-  /// A picture begins.
-  void begin();
-  /// Assigns what was drawn since the last mark, or since begin(), to the pass `name`.
-  void mark(std::string_view name);
+  void begin() override;
+  void mark(std::string_view name) override;
 
   struct Pass {
     std::string name;

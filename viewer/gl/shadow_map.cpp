@@ -53,7 +53,7 @@ void ShadowMap::end() {
   for (const TextureUnit unit : {kShadowUnit, kShadowDepthUnit}) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, depth_.name());
-    glBindSampler(unit, unit == kShadowUnit ? compared_.name() : plain_.name());
+    glBindSampler(static_cast<GLuint>(unit), unit == kShadowUnit ? compared_.name() : plain_.name());
   }
   glActiveTexture(GL_TEXTURE0);
 }

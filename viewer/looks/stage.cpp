@@ -439,7 +439,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   meshes::OrbitCamera from = camera;
   from.go_to(outside(camera.place()));
   meshes::View view = meshes::view_of(from, target.drawn_width_px(), target.drawn_height_px());
-  if (clock_ != nullptr) clock_->begin();
+  if (marks_ != nullptr) marks_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kMinSun;
   look_around(moment, view);

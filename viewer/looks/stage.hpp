@@ -7,7 +7,7 @@
 
 #include "engine/look/look.hpp"
 #include "viewer/gl/mirror.hpp"
-#include "viewer/gl/pass_clock.hpp"
+#include "viewer/gl/pass_marks.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/shadow_map.hpp"
@@ -64,9 +64,9 @@ class Stage {
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
-  /// From now on the passes of each picture are timed: kinematics, each kind of scene, their shadows, the sward, the
-  /// landscape, lights. Null: stops the timing. Must outlive the drawing.
-  void time_passes_with(gl::PassClock* clock) { clock_ = clock; }
+  /// From now on the passes of each picture are marked: kinematics, each kind of scene, their shadows, the sward, the
+  /// landscape, lights. Null: no more. Must outlive the drawing.
+  void mark_passes_for(gl::PassMarks* marks) { marks_ = marks; }
 
  private:
   struct SceneView {
@@ -96,7 +96,7 @@ class Stage {
   void draw_mirror(const stream::PoseMoment& moment, const meshes::View& view, const gl::RenderTarget& target);
   void draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
   void mark_pass(std::string_view name) {
-    if (clock_ != nullptr) clock_->mark(name);
+    if (marks_ != nullptr) marks_->mark(name);
   }
   void move_to(const stream::PoseMoment& moment);
   void move_ground(const stream::PoseMoment& moment);
@@ -124,7 +124,7 @@ class Stage {
   look::Quality quality_ = look::Quality::kLow;
   std::optional<gl::ShadowMap> shadow_map_;  // created when the sun first shines
   std::optional<gl::Mirror> mirror_;         // created when water first becomes visible
-  gl::PassClock* clock_ = nullptr;
+  gl::PassMarks* marks_ = nullptr;
 };
 
 }  // namespace yuragi::viewer::looks

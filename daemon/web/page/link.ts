@@ -18,6 +18,8 @@ export interface Listener {
 /** The stream of poses that is wanted beside the state: /ws of the guide describes it. */
 export interface StreamWish {
   scenes?: string[];
+  /** With light, cameras and what else the viewer's picture takes beside poses. */
+  sensors: true;
   every: number;
   rate: number;
 }

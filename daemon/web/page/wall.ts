@@ -65,7 +65,7 @@ function draw(): void {
   viewer.draw();
 }
 
-const wish: StreamWish = { every: Math.max(1, Math.round(number_of("every", 1))), rate: Math.max(0, number_of("rate", 0)) };
+const wish: StreamWish = { sensors: true, every: Math.max(1, Math.round(number_of("every", 1))), rate: Math.max(0, number_of("rate", 0)) };
 const scene = query.get("scene");
 if (scene) wish.scenes = [scene];
 
