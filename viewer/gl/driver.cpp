@@ -73,8 +73,6 @@ std::string_view glsl_version_line(int gl_version) {
   return gl_version >= 33 ? "#version 330 core" : "#version 140";
 }
 std::string_view glsl_version_line() {
-  if (!epoxy_is_desktop_gl())
-    return "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp usampler2D;\nprecision highp sampler3D;\nprecision highp sampler2DShadow;";
   return glsl_version_line(epoxy_gl_version());
 }
 
