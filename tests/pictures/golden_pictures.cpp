@@ -23,8 +23,9 @@ GoldenMoment golden_moment(std::string_view scene, const Weather& weather) {
   return {scenes, scenes->models(), scenes->moment()};
 }
 
-GoldenDrawing::GoldenDrawing(int samples)
-    : context_({.is_software = true, .has_messages = true}), target_(kWidth_px, kHeight_px, samples) {
+GoldenDrawing::GoldenDrawing(int samples, std::span<const gl::Version> versions)
+    : context_({.is_software = true, .has_messages = true, .versions = versions}),
+      target_(kWidth_px, kHeight_px, samples) {
   gl::report_gl_errors();
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -33,8 +34,11 @@ class GoldenDrawing {
   static constexpr int kWidth_px = 480;
   static constexpr int kHeight_px = 270;
 
-  explicit GoldenDrawing(int samples = 4);
+  /// `versions`: of OpenGL, to be requested in this order.
+  explicit GoldenDrawing(int samples = 4, std::span<const gl::Version> versions = gl::kVersionsToAskFor);
 
+  /// Low at first.
+  void set_quality(look::Quality quality) { stage_.set_quality(quality); }
   Picture draw(const GoldenMoment& moment);
 
  private:

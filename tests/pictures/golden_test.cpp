@@ -111,6 +111,59 @@ TEST_F(OldContextTest, DrawsTheGoldenPictures) {
   EXPECT_EQ(gl::gl_error_count(), 0);
 }
 
+/// Where Mesa is held down to OpenGL ES 3.0, which browsers have as WebGL 2.
+class BrowserContextTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const held =
+        std::getenv("MESA_GLES_VERSION_OVERRIDE");  // NOLINT(concurrency-mt-unsafe): nobody changes it
+    if (held == nullptr) {
+      GTEST_SKIP() << "MESA_GLES_VERSION_OVERRIDE is not set: ctest -R pictures_by_opengl_es_30 sets it";
+    }
+  }
+
+  /// Since the test began.
+  int errors() const { return gl::gl_error_count() - errors_before_; }
+
+ private:
+  const int errors_before_ = gl::gl_error_count();
+};
+
+TEST_F(BrowserContextTest, ReportsWhatOpenglEsDoesNotHave) {
+  const GoldenDrawing drawing(1, gl::kVersionsOfBrowsers);
+  glBindTexture(GL_TEXTURE_BUFFER, 0);
+  EXPECT_EQ(errors(), 1);
+}
+
+TEST_F(BrowserContextTest, DrawsTheGoldenPictures) {
+  GoldenDrawing drawing(4, gl::kVersionsOfBrowsers);
+  const gl::Driver driver = gl::current_driver();
+  ASSERT_TRUE(driver.is_es && driver.gl_version == 30) << "Mesa is not held down: " << driver.version;
+  const Weather& calm = kWeathers.front();
+  for (const std::string_view scene : {"grass", "fur", "banner", "cherry", "ripple", "flame", "garden"}) {
+    EXPECT_TRUE(is_golden(drawing.draw(golden_moment(scene, calm)), golden_file(scene, calm)));
+  }
+  EXPECT_EQ(errors(), 0);
+}
+
+Picture drawn_in(look::Quality quality, std::span<const gl::Version> versions, const GoldenMoment& moment) {
+  GoldenDrawing drawing(1, versions);
+  EXPECT_EQ(gl::current_driver().is_es, versions.front().is_es);
+  drawing.set_quality(quality);
+  return drawing.draw(moment);
+}
+
+// They have what low, that of the golden pictures, has not: soft shadows, and all of the water.
+TEST_F(BrowserContextTest, DrawsAsTheDesktopDoesInOtherQualities) {
+  const GoldenMoment garden = golden_moment("garden", kWeathers.front());
+  for (const look::Quality quality : {look::Quality::kMedium, look::Quality::kHigh}) {
+    const Picture by_es = drawn_in(quality, gl::kVersionsOfBrowsers, garden);
+    const Picture by_desktop = drawn_in(quality, gl::kVersionsToAskFor, garden);
+    EXPECT_GT(signal_to_noise_db(by_es, by_desktop), 40.0);
+  }
+  EXPECT_EQ(errors(), 0);
+}
+
 TEST_F(OldContextTest, TimesPassesWithoutTimestamps) {
   const gl::HeadlessContext context({.is_software = true, .has_messages = true});
   ASSERT_FALSE(epoxy_has_gl_extension("GL_ARB_timer_query")) << "Mesa is not held down";

@@ -74,6 +74,15 @@ PictureDifference difference(const Picture& a, const Picture& b) {
   return result;
 }
 
+double signal_to_noise_db(const Picture& a, const Picture& b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const double differs = static_cast<double>(a.rgb[i]) - static_cast<double>(b.rgb[i]);
+    squares += differs * differs;
+  }
+  return 10.0 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgb.size()) / squares);
+}
+
 Picture difference_picture(const Picture& a, const Picture& b) {
   Picture result = a;
   for (std::size_t i = 0; i < std::min(a.rgb.size(), b.rgb.size()); ++i) {

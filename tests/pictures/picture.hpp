@@ -26,6 +26,9 @@ struct PictureDifference {
 /// Pictures of different sizes differ by 255 everywhere.
 PictureDifference difference(const Picture& a, const Picture& b);
 
+/// The peak signal-to-noise ratio of two pictures of the same size, in decibels; infinite where they are the same.
+double signal_to_noise_db(const Picture& a, const Picture& b);
+
 /// Black where the two are the same, 4 times as bright as they differ elsewhere. Of the same size.
 Picture difference_picture(const Picture& a, const Picture& b);
 

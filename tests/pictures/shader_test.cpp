@@ -25,10 +25,9 @@ std::string complaint_of(std::string_view vertex, std::string_view fragment) {
   }
 }
 
-constexpr std::string_view kPlainVertex = "void main() { gl_Position = to_clip * vec4(0.0, 0.0, 0.0, 1.0); }";
-
-TEST(ShaderTest, EachCompiles) {
-  const HeadlessContext context({.is_software = true, .has_messages = true});
+/// Compiles each shader in the current context.
+void compile_each() {
+  constexpr std::string_view kPlainVertex = "void main() { gl_Position = to_clip * vec4(0.0, 0.0, 0.0, 1.0); }";
   for (const shaders::Shader& shader : shaders::all()) {
     if (shader.text == shaders::kCommon) continue;  // in front of each
     const bool is_vertex = shader.file.find(".vert.") != std::string_view::npos;
@@ -37,6 +36,18 @@ TEST(ShaderTest, EachCompiles) {
     // A fragment shader alone misses what the vertex shader gives it: linking is not the matter here.
     EXPECT_THAT(complaint, testing::Not(testing::HasSubstr("cannot compile")));
   }
+}
+
+TEST(ShaderTest, EachCompiles) {
+  const HeadlessContext context({.is_software = true, .has_messages = true});
+  compile_each();
+}
+
+TEST(ShaderTest, EachCompilesAsABrowsers) {
+  const HeadlessContext context({.is_software = true, .has_messages = true, .versions = kVersionsOfBrowsers});
+  ASSERT_TRUE(current_driver().is_es) << current_driver().version;
+  EXPECT_EQ(glsl_version_line(), "#version 300 es");
+  compile_each();
 }
 
 TEST(HeadlessContextTest, TakesTheFirstVersionThatTheDriverHas) {

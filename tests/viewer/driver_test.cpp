@@ -18,6 +18,8 @@ TEST(DriverTest, GivesEachContextAGlslThatItKnows) {
   EXPECT_EQ(glsl_version_line(32), "#version 140");
   EXPECT_EQ(glsl_version_line(33), "#version 330 core");
   EXPECT_EQ(glsl_version_line(46), "#version 330 core");
+  EXPECT_EQ(glsl_version_line(30, true), "#version 300 es");
+  EXPECT_EQ(glsl_version_line(32, true), "#version 300 es");
 }
 
 TEST(DriverTest, AsksForTheNewestFirstAndForACoreContextWhereThereIsSuchAThing) {
@@ -31,6 +33,12 @@ TEST(DriverTest, Opengl31IsEnoughWithTheExtensions) {
   EXPECT_TRUE(is_enough({.gl_version = 46}));
   EXPECT_FALSE(is_enough({.gl_version = 30}));
   EXPECT_FALSE(is_enough({.gl_version = 31, .missing_extensions = {"GL_ARB_shader_bit_encoding"}}));
+}
+
+TEST(DriverTest, OpenglEs30IsEnough) {
+  EXPECT_TRUE(is_enough({.gl_version = 30, .is_es = true}));
+  EXPECT_FALSE(is_enough({.gl_version = 20, .is_es = true}));
+  EXPECT_THAT(too_old_text({.renderer = "A card", .gl_version = 20, .is_es = true}), HasSubstr("lacks OpenGL ES 3.0"));
 }
 
 TEST(DriverTest, OnARaspberryPi4OfDebian12ThereIsAVariable) {

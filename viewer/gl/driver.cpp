@@ -6,6 +6,11 @@ namespace yuragi::viewer::gl {
 namespace {
 
 constexpr int kOldest = kVersionsToAskFor.back().number();
+constexpr int kOldestEs = kVersionsOfBrowsers.back().number();
+
+int oldest_of(const Driver& driver) {
+  return driver.is_es ? kOldestEs : kOldest;
+}
 
 std::string text_of(GLenum name) {
   const auto* const text = reinterpret_cast<const char*>(glGetString(name));
@@ -15,7 +20,7 @@ std::string text_of(GLenum name) {
 /// Returns what is wrong with the driver, as the end of a sentence.
 std::string complaint_of(const Driver& driver) {
   if (is_enough(driver)) return "refuses each version of OpenGL that was asked for";
-  if (driver.gl_version < kOldest) return "lacks OpenGL 3.1";
+  if (driver.gl_version < oldest_of(driver)) return driver.is_es ? "lacks OpenGL ES 3.0" : "lacks OpenGL 3.1";
   std::string text = "lacks ";
   for (const std::string_view name : driver.missing_extensions) text.append(name).append(", ");
   return text.substr(0, text.size() - 2);
@@ -51,7 +56,9 @@ Driver current_driver() {
   Driver driver{.renderer = text_of(GL_RENDERER),
                 .vendor = text_of(GL_VENDOR),
                 .version = text_of(GL_VERSION),
-                .gl_version = epoxy_gl_version()};
+                .gl_version = epoxy_gl_version(),
+                .is_es = !epoxy_is_desktop_gl()};
+  if (driver.is_es) return driver;  // 3.0 has them all
   for (const NeededExtension& extension : kNeededExtensions) {
     if (driver.gl_version < extension.part_of && !epoxy_has_gl_extension(extension.name.data())) {
       driver.missing_extensions.push_back(extension.name);
@@ -61,7 +68,7 @@ Driver current_driver() {
 }
 
 bool is_enough(const Driver& driver) {
-  return driver.gl_version >= kOldest && driver.missing_extensions.empty();
+  return driver.gl_version >= oldest_of(driver) && driver.missing_extensions.empty();
 }
 
 std::string too_old_text(const Driver& driver) {
@@ -69,11 +76,12 @@ std::string too_old_text(const Driver& driver) {
          complaint_of(driver) + ".\n" + remedy_text(driver);
 }
 
-std::string_view glsl_version_line(int gl_version) {
+std::string_view glsl_version_line(int gl_version, bool is_es) {
+  if (is_es) return "#version 300 es";
   return gl_version >= 33 ? "#version 330 core" : "#version 140";
 }
 std::string_view glsl_version_line() {
-  return glsl_version_line(epoxy_gl_version());
+  return glsl_version_line(epoxy_gl_version(), !epoxy_is_desktop_gl());
 }
 
 }  // namespace yuragi::viewer::gl

@@ -20,12 +20,13 @@ void GLAPIENTRY log_message(GLenum, GLenum type, GLuint, GLenum severity, GLsize
 }  // namespace
 
 bool is_context_lost() {
-  static const bool reports_reset = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
+  static const bool reports_reset =
+      (epoxy_is_desktop_gl() && epoxy_gl_version() >= 45) || epoxy_has_gl_extension("GL_KHR_robustness");
   return reports_reset && glGetGraphicsResetStatus() != GL_NO_ERROR;
 }
 
 void report_gl_errors() {
-  if (!epoxy_has_gl_extension("GL_KHR_debug") && epoxy_gl_version() < 43) return;
+  if (!epoxy_has_gl_extension("GL_KHR_debug") && !(epoxy_is_desktop_gl() && epoxy_gl_version() >= 43)) return;
   glEnable(GL_DEBUG_OUTPUT);
   glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
   glDebugMessageCallback(log_message, nullptr);

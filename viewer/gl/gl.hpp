@@ -144,6 +144,8 @@ void stream_to(GLenum target, const Buffer& buffer, std::span<const T> content) 
 /// Returns true if the driver computes every pixel on the processor, without graphics hardware.
 bool is_software_renderer();
 
+// What follows is in driver_reports.cpp, because OpenGL ES 3.0 and WebGL 2 do not have it.
+
 /// Returns true if the graphics card was reset, which deletes the context's content. Only a new context, that is, a
 /// restarted program, can then draw. Always false if the driver does not report it (GL_KHR_robustness).
 bool is_context_lost();

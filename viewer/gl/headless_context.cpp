@@ -54,33 +54,34 @@ struct HeadlessContext::State {
     if (on == EGL_NO_DISPLAY || eglInitialize(on, nullptr, nullptr) != EGL_TRUE) return false;
     display = on;
     if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) return false;
-    constexpr std::array<EGLint, 5> kConfig{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                                            EGL_NONE};
-    EGLConfig config = nullptr;
-    EGLint count = 0;
-    if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE ||
-        eglChooseConfig(display, kConfig.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
-      return false;
-    }
     for (const Version& version : options.versions) {
-      if (!make_current(config, attributes_of(version, options))) continue;
+      if (!make_current(version.is_es, attributes_of(version, options))) continue;
       if (is_enough(current_driver())) return true;
       drop_context();
     }
     // Of any version, to learn its driver.
-    if (make_current(config, {EGL_NONE})) too_old = current_driver();
+    if (make_current(false, {EGL_NONE})) too_old = current_driver();
     return false;
   }
 
+  /// Returns what a context draws with; nullopt if there is nothing for this kind.
+  std::optional<EGLConfig> config_of(bool is_es) const {
+    const std::array<EGLint, 5> wanted{EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE,
+                                       is_es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (eglBindAPI(is_es ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE ||
+        eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
+      return std::nullopt;
+    }
+    return config;
+  }
+
   static std::vector<EGLint> attributes_of(const Version& version, const HeadlessOptions& options) {
-    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                   version.major,
-                                   EGL_CONTEXT_MINOR_VERSION,
-                                   version.minor,
-                                   EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE,
-                                   EGL_TRUE,
-                                   EGL_CONTEXT_OPENGL_DEBUG,
-                                   options.has_messages ? EGL_TRUE : EGL_FALSE};
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION, version.major,
+                                   EGL_CONTEXT_MINOR_VERSION, version.minor,
+                                   EGL_CONTEXT_OPENGL_DEBUG,  options.has_messages ? EGL_TRUE : EGL_FALSE};
+    if (!version.is_es) attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE, EGL_TRUE});
     if (version.is_core()) {
       attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
     }
@@ -88,8 +89,10 @@ struct HeadlessContext::State {
     return attributes;
   }
 
-  bool make_current(EGLConfig config, const std::vector<EGLint>& attributes) {
-    context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
+  bool make_current(bool is_es, const std::vector<EGLint>& attributes) {
+    const std::optional<EGLConfig> config = config_of(is_es);
+    if (!config) return false;
+    context = eglCreateContext(display, *config, EGL_NO_CONTEXT, attributes.data());
     if (context == EGL_NO_CONTEXT) return false;
     if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) return true;
     drop_context();
