@@ -41,6 +41,12 @@ TexelBuffer::TexelBuffer(GLenum format)
       type_(layout_of(format).type),
       texel_bytes_(layout_of(format).bytes),
       most_rows_(largest_side()) {
+  glActiveTexture(GL_TEXTURE0);
+  for (const Copy& copy : copies_) {
+    glBindTexture(GL_TEXTURE_2D, copy.texture.name());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  }
   begin(0);
 }
 
@@ -54,8 +60,6 @@ void TexelBuffer::begin(std::size_t texels) {
   bind(0);
   glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format_), static_cast<GLsizei>(kWide), static_cast<GLsizei>(rows),
                0, order_, type_, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
 void TexelBuffer::write(std::size_t first, const std::byte* content, std::size_t bytes) {
