@@ -11,7 +11,7 @@ foreach(library boost flatbuffers fmt glm nlohmann)
   file(CREATE_LINK /usr/include/${library} ${headers}/${library} SYMBOLIC)
 endforeach()
 add_library(yuragi_web_headers INTERFACE)
-target_include_directories(yuragi_web_headers SYSTEM INTERFACE ${headers} ${PROJECT_SOURCE_DIR}/viewer/web/include)
+target_include_directories(yuragi_web_headers SYSTEM INTERFACE ${headers} ${PROJECT_SOURCE_DIR}/config/cmake/web_headers)
 target_compile_definitions(yuragi_web_headers INTERFACE FMT_HEADER_ONLY)
 foreach(library Boost::headers flatbuffers::flatbuffers fmt::fmt glm::glm nlohmann_json::nlohmann_json
                 PkgConfig::EPOXY PkgConfig::STB Threads::Threads yuragi_asio)
@@ -21,7 +21,7 @@ find_program(FLATC_PROGRAM flatc REQUIRED CMAKE_FIND_ROOT_PATH_BOTH)
 find_program(PYTHON3_PROGRAM NAMES python3 PATHS /usr/bin REQUIRED NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 
 # Exceptions and vectors as WebAssembly has them, which is what every browser of 2023 and newer knows. libc++ 13 lacks some of C++20.
-add_compile_options(-fwasm-exceptions -include ${PROJECT_SOURCE_DIR}/viewer/web/include/missing_in_libcxx_13.hpp)
+add_compile_options(-fwasm-exceptions -include ${PROJECT_SOURCE_DIR}/config/cmake/web_headers/missing_in_libcxx_13.hpp)
 add_link_options(-fwasm-exceptions)
 
 # Of these rooms other programs' sources and headers alone are needed.

@@ -1,16 +1,16 @@
-// What the page calls (daemon/web/wall/wall.ts): C functions, since that is what WebAssembly exports. One picture a
-// page.
+// What the page calls (daemon/web/page/viewer.ts): C functions, which WebAssembly exports if they are marked as used.
+// One picture a page.
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include <emscripten/em_macros.h>
-#include <emscripten/heap.h>
-
+#include "engine/look/look.hpp"
 #include "viewer/web/wall.hpp"
 
 namespace yuragi::viewer::web {
@@ -50,7 +50,7 @@ extern "C" {
 
 /// Begins on the current context, and forgets what was there before. `look`: "time=21:00", a line each. Returns null,
 /// or what is wrong with them.
-EMSCRIPTEN_KEEPALIVE const char* wall_open(const char* camera, const char* scene, const char* look, int is_software) {
+[[gnu::used]] const char* wall_open(const char* camera, const char* scene, const char* look, int is_software) {
   return text_of([&]() -> std::optional<std::string> {
     wall.reset();
     picture::ViewerOptions options;
@@ -64,12 +64,12 @@ EMSCRIPTEN_KEEPALIVE const char* wall_open(const char* camera, const char* scene
 }
 
 /// Ends it. Its context may be lost.
-EMSCRIPTEN_KEEPALIVE void wall_close() {
+[[gnu::used]] void wall_close() {
   wall.reset();
 }
 
 /// Takes a message of the stream. Returns null, or why the connection is of no use.
-EMSCRIPTEN_KEEPALIVE const char* wall_take(const std::uint8_t* message, std::size_t size, double now_s) {
+[[gnu::used]] const char* wall_take(const std::uint8_t* message, std::size_t size, double now_s) {
   return text_of([&]() -> std::optional<std::string> {
     if (!wall) return std::nullopt;
     return wall->take({message, size}, now_s);
@@ -77,23 +77,23 @@ EMSCRIPTEN_KEEPALIVE const char* wall_take(const std::uint8_t* message, std::siz
 }
 
 /// Draws a picture if it is time for one. Returns null, or what failed; then there is no wall any more.
-EMSCRIPTEN_KEEPALIVE const char* wall_draw(double now_s, int width_px, int height_px) {
+[[gnu::used]] const char* wall_draw(double now_s, int width_px, int height_px) {
   return text_of([&]() -> std::optional<std::string> {
     if (wall) wall->draw(now_s, width_px, height_px);
     return std::nullopt;
   });
 }
 
-EMSCRIPTEN_KEEPALIVE int wall_is_drawing(double now_s) {
+[[gnu::used]] int wall_is_drawing(double now_s) {
   return wall && wall->is_drawing(now_s) ? 1 : 0;
 }
 
-EMSCRIPTEN_KEEPALIVE double wall_pictures() {
+[[gnu::used]] double wall_pictures() {
   return wall ? static_cast<double>(wall->pictures()) : 0.0;
 }
 
 /// How the last picture was drawn.
-EMSCRIPTEN_KEEPALIVE const char* wall_pace() {
+[[gnu::used]] const char* wall_pace() {
   return text_of([]() -> std::optional<std::string> { return wall ? wall->pace_text() : std::string(); });
 }
 

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "engine/wire/wire.hpp"
+#include "viewer/gl/gl.hpp"
 #include "viewer/pace/quality.hpp"
 
 namespace yuragi::viewer::web {
