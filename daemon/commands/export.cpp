@@ -61,6 +61,7 @@ struct ExportOptions {
   std::string until;
   std::optional<double> resample_s;
   bool quantities = false;
+  bool this_file = false;
   bool force = false;
   TakeOptions take;
 };
@@ -175,7 +176,9 @@ void run_export(const ExportOptions& options) {
           "--from, --to, --since, --until, --resample and --quantities are for CSV output; a copy is always "
           "of the whole recording");
     }
-    if (const auto copied = reader->copy_to(output.working_path()); !copied) {
+    const auto copied = options.this_file ? drivers::windlog::Reader::copy_file(options.input, output.working_path())
+                                          : reader->copy_to(output.working_path());
+    if (!copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
     }
     output.commit().value();
@@ -218,6 +221,7 @@ void add_export(CLI::App& app) {
       ->add_flag("--quantities", options->quantities,
                  "write what stations reported besides the wind: temperature, pressure, humidity, rain")
       ->excludes(resample);
+  command->add_flag("--this-file", options->this_file, "of a series of files, copy only the file of this name");
   command->add_flag("--force", options->force, "overwrite the output");
   options->take.add_to(*command);
   command->callback([options] { run_export(*options); });
