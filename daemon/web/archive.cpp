@@ -1,6 +1,7 @@
 #include "daemon/web/archive.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <condition_variable>
@@ -71,7 +72,7 @@ std::string without_folder(std::string text, const fs::path& recording) {
 }
 
 ordered_json job_json(const Job& job, const fs::path& recording) {
-  constexpr std::string_view kStates[] = {"running", "done", "failed"};
+  constexpr std::array<std::string_view, 3> kStates = {"running", "done", "failed"};
   ordered_json content = {{"id", job.id},
                           {"kind", job.kind},
                           {"recording", job.recording.empty() ? ordered_json() : ordered_json(job.recording)},

@@ -1,5 +1,6 @@
 #include "daemon/web/archive.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <future>

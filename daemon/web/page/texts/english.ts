@@ -148,7 +148,7 @@ export const english = {
   verified: (readings: string, files: string, gaps: string) => `Readings: ${readings}, files: ${files}, gaps: ${gaps}`,
   job_runs: (duration: string) => `Working for ${duration} …`,
   job_lost: "The daemon does not know the result any more. Try again.",
-  support: "Support and configuration",
+  support: "Support",
   make_bundle: "Make a support bundle",
   bundle_help: "The bundle has the configuration, the log and the state of this installation, without passwords. Read it before you send it.",
   configuration: "Configuration",

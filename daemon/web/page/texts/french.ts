@@ -139,7 +139,7 @@ export const french: Texts = {
   verified: (readings, files, gaps) => `Mesures : ${readings}, fichiers : ${files}, lacunes : ${gaps}`,
   job_runs: (duration) => `En cours depuis ${duration} …`,
   job_lost: "Le démon ne connaît plus le résultat. Réessayer.",
-  support: "Assistance et configuration",
+  support: "Assistance",
   make_bundle: "Créer un dossier d’assistance",
   bundle_help: "Le dossier contient la configuration, le journal et l’état de cette installation, sans mots de passe. À lire avant l’envoi.",
   configuration: "Configuration du démon",

@@ -138,7 +138,7 @@ export const german: Texts = {
   verified: (readings, files, gaps) => `Messwerte: ${readings}, Dateien: ${files}, Lücken: ${gaps}`,
   job_runs: (duration) => `Läuft seit ${duration} …`,
   job_lost: "Der Daemon kennt das Ergebnis nicht mehr. Bitte noch einmal versuchen.",
-  support: "Support und Konfiguration",
+  support: "Hilfe",
   make_bundle: "Support-Paket erstellen",
   bundle_help: "Das Paket enthält Konfiguration, Protokoll und Zustand dieser Installation, ohne Passwörter. Vor dem Versenden lesen.",
   configuration: "Konfiguration",

@@ -138,7 +138,7 @@ export const japanese: Texts = {
   verified: (readings, files, gaps) => `測定値 ${readings} 件、ファイル ${files} 個、欠測 ${gaps} か所`,
   job_runs: (duration) => `実行中（${duration}）…`,
   job_lost: "デーモンに結果がもうありません。もう一度お試しください。",
-  support: "サポートと設定",
+  support: "サポート",
   make_bundle: "サポート用ファイルを作成",
   bundle_help: "この設備の設定、ログ、状態が入ります。パスワードは含まれません。送る前に中身を確認してください。",
   configuration: "設定",
