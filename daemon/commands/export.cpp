@@ -40,7 +40,8 @@ constexpr const char* kExportFooter =
     "With --quantities it writes the other quantities of stations, at most one row per sensor and second, with the\n"
     "columns time_utc, sensor, vertical_speed_m_s (upward), air_temperature_c, pressure_hpa,\n"
     "relative_humidity_percent, rain_total_mm (the station's counter) and rain_rate_mm_h; empty if not reported.\n"
-    "A .windlog as output is a consistent copy, even of a recording that is being written.\n"
+    "A .windlog as output is a consistent copy, even of a recording that is being written; of a series of files\n"
+    "--this-file copies one.\n"
     "A .glb as output is a take: a scene, moved by the recorded wind, as glTF 2.0 for Blender and other 3D programs;\n"
     "each joint of its skeleton is a joint of a skinned mesh, thinned out to 12,000 (--every).\n"
     "\n"
@@ -61,6 +62,7 @@ struct ExportOptions {
   std::string until;
   std::optional<double> resample_s;
   bool quantities = false;
+  bool this_file = false;
   bool force = false;
   TakeOptions take;
 };
@@ -163,6 +165,8 @@ void run_export(const ExportOptions& options) {
     const bool is_there = drivers::windlog::recording_exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
   }
+  if (options.this_file && std::filesystem::path(options.output).extension() != ".windlog")
+    throw ExitError(kExitUsage, "--this-file is for a copy: -o COPY.windlog");
   if (options.output == "-") return export_as_csv(*reader, options, stdout);
 
   const auto lock = lock_output(options.output);
@@ -175,7 +179,9 @@ void run_export(const ExportOptions& options) {
           "--from, --to, --since, --until, --resample and --quantities are for CSV output; a copy is always "
           "of the whole recording");
     }
-    if (const auto copied = reader->copy_to(output.working_path()); !copied) {
+    const auto copied = options.this_file ? drivers::windlog::Reader::copy_file(options.input, output.working_path())
+                                          : reader->copy_to(output.working_path());
+    if (!copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
     }
     output.commit().value();
@@ -218,6 +224,7 @@ void add_export(CLI::App& app) {
       ->add_flag("--quantities", options->quantities,
                  "write what stations reported besides the wind: temperature, pressure, humidity, rain")
       ->excludes(resample);
+  command->add_flag("--this-file", options->this_file, "of a series of files, copy only the file of this name");
   command->add_flag("--force", options->force, "overwrite the output");
   options->take.add_to(*command);
   command->callback([options] { run_export(*options); });

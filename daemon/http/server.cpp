@@ -1,20 +1,27 @@
 #include "daemon/http/server.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
 
+#include "daemon/http/file_body.hpp"
 #include "daemon/http/upgrade.hpp"
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
@@ -52,15 +59,29 @@ std::optional<Response> refusal_of(const error_code& error) {
 
 constexpr const char* kRetryAfter_s = "10";
 
+/// A file that is being sent.
+struct Sending {
+  Sending(asio::io_context& io, std::shared_ptr<const FileBody> file) : body(std::move(file)), pipe(io), patience(io) {}
+
+  std::shared_ptr<const FileBody> body;
+  beast_http::response<beast_http::empty_body> header{};
+  std::optional<beast_http::response_serializer<beast_http::empty_body>> serializer{};
+  asio::posix::stream_descriptor pipe;
+  asio::steady_timer patience;  ///< with the disk
+  std::array<char, 64UL * 1024> piece{};
+  std::uint64_t left_bytes = 0;
+};
+
 /// One client: request after request. Kept alive by what it waits for.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   /// Why `client` gets no place of Limits::clients; nullopt if it gets one.
   using Admission = std::function<std::optional<std::string>(const stream::Peer& client)>;
 
-  Connection(tcp::socket socket, stream::Peer client, const Limits& limits, const Server::Handler& handler,
-             Admission admission)
-      : stream_(std::move(socket)),
+  Connection(asio::io_context& io, tcp::socket socket, stream::Peer client, const Limits& limits,
+             const Server::Handler& handler, Admission admission)
+      : io_(io),
+        stream_(std::move(socket)),
         client_(std::move(client)),
         limits_(limits),
         handler_(handler),
@@ -79,6 +100,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void end() {
     error_code ignored;
     stream_.socket().close(ignored);
+    if (sending_) {
+      sending_->pipe.close(ignored);
+      sending_->patience.cancel();
+    }
     has_ended_ = true;
   }
   bool has_ended() const { return has_ended_; }
@@ -150,24 +175,79 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void write(Response response) {
     if (has_ended_) return;
     if (response.take_over) return hand_over(response.take_over);
+    if (response.file) return send_file(response);
     message_ = {};
-    message_.version(11);
-    message_.result(response.status);
-    message_.set(beast_http::field::content_type, response.content_type);
-    message_.set(beast_http::field::cache_control, "no-store");
-    message_.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
-    message_.set("Referrer-Policy", "no-referrer");
-    message_.set("X-Content-Type-Options", "nosniff");
-    for (const auto& [name, value] : response.fields) message_.set(name, value);
+    set_header(message_, response);
     message_.body() = std::move(response.body);
-    message_.keep_alive(!is_last_);
     message_.prepare_payload();
     if (is_head_) message_.body().clear();  // its length stays in the header
     stream_.expires_after(limits_.time);
     beast_http::async_write(stream_, message_, [self = shared_from_this()](const error_code& error, std::size_t) {
-      if (error || self->has_ended_) return self->end();
-      self->go_on([&] { self->is_last_ ? self->hang_up() : self->read(); });
+      self->go_on([&] { self->finish(error); });
     });
+  }
+
+  template <class Message>
+  void set_header(Message& message, const Response& response) const {
+    message.version(11);
+    message.result(response.status);
+    message.set(beast_http::field::content_type, response.content_type);
+    message.set(beast_http::field::cache_control, "no-store");
+    message.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+    message.set("Referrer-Policy", "no-referrer");
+    message.set("X-Content-Type-Options", "nosniff");
+    for (const auto& [name, value] : response.fields) message.set(name, value);
+    message.keep_alive(!is_last_);
+  }
+
+  /// An answer has been sent.
+  void finish(const error_code& error) {
+    if (error || has_ended_) return end();
+    sending_.reset();
+    is_last_ ? hang_up() : read();
+  }
+
+  /// Header, then piece after piece.
+  void send_file(const Response& response) {
+    sending_ = std::make_unique<Sending>(io_, response.file);
+    set_header(sending_->header, response);
+    sending_->header.content_length(response.file->bytes());
+    sending_->serializer.emplace(sending_->header);
+    stream_.expires_after(limits_.time);
+    beast_http::async_write_header(stream_, *sending_->serializer,
+                                   [self = shared_from_this()](const error_code& error, std::size_t) {
+                                     self->go_on([&] { self->begin_file(error); });
+                                   });
+  }
+  void begin_file(const error_code& error) {
+    if (error || has_ended_) return end();
+    sending_->left_bytes = is_head_ ? 0 : sending_->body->bytes();
+    if (sending_->left_bytes == 0) return finish({});
+    sending_->pipe.assign(sending_->body->begin());
+    read_piece();
+  }
+  void read_piece() {
+    sending_->patience.expires_after(limits_.time);
+    sending_->patience.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error) self->end();
+    });
+    sending_->pipe.async_read_some(asio::buffer(sending_->piece),
+                                   [self = shared_from_this()](const error_code& error, std::size_t size) {
+                                     self->go_on([&] { self->send_piece(error, size); });
+                                   });
+  }
+  void send_piece(const error_code& error, std::size_t size) {
+    if (error || has_ended_) return end();
+    sending_->patience.cancel();
+    sending_->left_bytes -= size;
+    stream_.expires_after(limits_.time);
+    asio::async_write(stream_, asio::buffer(sending_->piece, size),
+                      [self = shared_from_this()](const error_code& failed, std::size_t) {
+                        self->go_on([&] {
+                          if (failed || self->has_ended_) return self->end();
+                          self->sending_->left_bytes == 0 ? self->finish({}) : self->read_piece();
+                        });
+                      });
   }
 
   void hand_over(const std::function<void(Upgrade&)>& take_over) {
@@ -191,6 +271,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                             [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
   }
 
+  asio::io_context& io_;
   beast::tcp_stream stream_;
   stream::Peer client_;
   const Limits& limits_;
@@ -199,6 +280,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_;
   std::optional<beast_http::request_parser<beast_http::string_body>> parser_;
   beast_http::response<beast_http::string_body> message_;
+  std::unique_ptr<Sending> sending_;  ///< null: no file is being sent
   bool has_place_ = false;
   bool is_head_ = false;
   bool is_last_ = false;  ///< the connection is closed after this reply
@@ -210,7 +292,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
 class Server::Listener : public std::enable_shared_from_this<Listener> {
  public:
   Listener(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler)
-      : acceptor_(stream::open_acceptor(io, listen)), again_(io), limits_(limits), handler_(std::move(handler)) {
+      : io_(io),
+        acceptor_(stream::open_acceptor(io, listen)),
+        again_(io),
+        limits_(limits),
+        handler_(std::move(handler)) {
     const tcp::endpoint endpoint = acceptor_.local_endpoint();
     endpoint_ = to_string(Address{endpoint.address().to_string(), endpoint.port()});
   }
@@ -259,7 +345,7 @@ class Server::Listener : public std::enable_shared_from_this<Listener> {
       return turn_away(std::move(socket), *why);
     }
     connections_.push_back(std::make_shared<Connection>(
-        std::move(socket), std::move(client), limits_, handler_, [this](const stream::Peer& asking) {
+        io_, std::move(socket), std::move(client), limits_, handler_, [this](const stream::Peer& asking) {
           return stream::admission_refusal(limits_.clients, present(true), asking);
         }));
     connections_.back()->read();
@@ -285,6 +371,7 @@ class Server::Listener : public std::enable_shared_from_this<Listener> {
     socket.shutdown(tcp::socket::shutdown_send, ignored);
   }
 
+  asio::io_context& io_;
   tcp::acceptor acceptor_;
   asio::steady_timer again_;
   Limits limits_;

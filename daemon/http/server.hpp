@@ -40,12 +40,15 @@ struct Request {
 };
 
 struct Upgrade;  // upgrade.hpp
+class FileBody;  // file_body.hpp
 
 struct Response {
   unsigned status = 200;
   std::string content_type = "application/json";
   std::string body = {};
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further fields of the header
+  /// The body, in place of `body`: sent piece by piece, each within Limits::time. Kept until it is sent.
+  std::shared_ptr<const FileBody> file = {};
   /// Takes over the connection of a request for a WebSocket, in place of an answer. It then has no place of HTTP's.
   std::function<void(Upgrade& upgrade)> take_over = {};
 };
@@ -60,7 +63,7 @@ struct Limits {
   stream::AdmissionLimits newcomers = {.max_clients = 96, .max_clients_per_address = 16};
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 64UL * 1024;
-  /// From the end of an answer to the end of the next request, and for writing an answer.
+  /// From the end of an answer to the end of the next request, and for writing an answer, or a piece of a file.
   Nanoseconds time = std::chrono::seconds(20);
 };
 

@@ -121,6 +121,7 @@ class Service::Io {
       : options_(options),
         rate_hz_(config.animation.rate_hz),
         http_(config.http),
+        least_free_bytes_(config.recording.least_free_bytes),
         gusts_(sensing::make_gust_noise(config)),
         animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
         director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
@@ -254,6 +255,10 @@ class Service::Io {
                            .proxies = http_.proxies,
                            .origins = http_.origins,
                            .folder = http_.folder,
+                           .archive = {.recording = options_.record.value_or(std::filesystem::path()),
+                                       .least_free_bytes = least_free_bytes_,
+                                       .configuration = options_.config_file,
+                                       .stream = stream_.local_endpoint()},
                            .guide = web::installed_folder("guide"),
                            .viewer = web::installed_folder("wall"),
                            .software = with_version("yuragi"),
@@ -692,6 +697,7 @@ class Service::Io {
   std::optional<std::string> failure_;  ///< why it ends although nobody asked it to
 
   settings::HttpConfig http_;
+  std::uint64_t least_free_bytes_;
   const bool takes_token_ = !http_.token_file.empty();
   Secret token_;                              ///< empty: there is none, or it cannot be read
   std::string token_trouble_, page_trouble_;  ///< empty: none

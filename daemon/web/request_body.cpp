@@ -190,6 +190,12 @@ Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json) {
   return wire::ReloadCommand{};
 }
 
+Result<void, Failure> empty_body(std::string_view json) {
+  Body body(json);
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return {};
+}
+
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {
   Body body(json);
   wire::PlayerCommand command;

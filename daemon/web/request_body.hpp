@@ -55,6 +55,9 @@ Result<wire::ParameterCommand, Failure> parameter_command_of(std::string_view js
 /// {}
 Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
 
+/// {}, of a request whose path has all
+Result<void, Failure> empty_body(std::string_view json);
+
 /// {"action": "pause", "resume", "step", "seek" or "rate", "sensor": name, "count": 1, "place": "+30", "rate": 1}
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json);
 

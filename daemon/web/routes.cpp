@@ -213,6 +213,32 @@ Answer log(const http::Request& request, const Facts& facts) {
   return json_response({{"lines", std::move(lines)}});
 }
 
+// ---- recordings, jobs about them, and the configuration ----
+
+using What = ArchiveRequest::What;
+constexpr std::string_view kRecordings = "/api/v1/recordings";
+
+/// The name in /api/v1/recordings/NAME/verify; empty if the path has none.
+std::string name_in(std::string_view path) {
+  constexpr std::size_t kPlace = 3;  // behind "", "api", "v1" and the kind
+  for (std::size_t i = 0; i <= kPlace; ++i) {
+    const std::size_t slash = path.find('/');
+    if (slash == std::string_view::npos) return {};
+    path.remove_prefix(slash + 1);
+  }
+  return decoded_name(path.substr(0, path.find('/')));
+}
+
+template <What kWhat>
+Answer archived(const http::Request& request, const Facts& /*facts*/) {
+  return ArchiveRequest{.what = kWhat, .name = name_in(request.path)};
+}
+template <What kWhat>
+Answer job(const http::Request& request, const Facts& facts) {
+  if (const auto body = empty_body(request.body); !body) return problem(400, "Not understood", body.error().message);
+  return archived<kWhat>(request, facts);
+}
+
 constexpr std::array kRoutes = {
     Route{"GET", "/healthz", health},
     Route{"GET", "/metrics", metrics},
@@ -228,11 +254,40 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/reload", reload},
     Route{"GET", "/api/v1/wind", recent_wind},
     Route{"GET", "/api/v1/history", history},
-    Route{"GET", kLogPath, log},
+    Route{"GET", "/api/v1/log", log, true},
     Route{"POST", kPairPath, pair},
-    Route{"GET", kSessionsPath, sessions},
-    Route{"POST", kSessionsPath, revoke_session},
+    Route{"GET", kSessionsPath, sessions, true},
+    Route{"POST", kSessionsPath, revoke_session, true},
+
+    Route{"GET", kRecordings, archived<What::kList>, true},
+    Route{"GET", "/api/v1/recordings/{name}", archived<What::kDownload>, true},
+    Route{"POST", "/api/v1/recordings/{name}/verify", job<What::kVerify>, true},
+    Route{"POST", "/api/v1/recordings/{name}/report", job<What::kReport>, true},
+    Route{"POST", "/api/v1/recordings/{name}/copy", job<What::kCopy>, true},
+    Route{"POST", "/api/v1/support-bundle", job<What::kSupportBundle>, true},
+    Route{"GET", "/api/v1/jobs/{id}", archived<What::kJob>, true},
+    Route{"GET", "/api/v1/jobs/{id}/file", archived<What::kJobFile>, true},
+    Route{"GET", "/api/v1/configuration", archived<What::kConfiguration>, true},
 };
+
+/// Takes the first part of a path, up to the next slash, which goes, too.
+std::string_view take_part(std::string_view& path) {
+  const std::string_view part = path.substr(0, path.find('/'));
+  path.remove_prefix(std::min(part.size() + 1, path.size()));
+  return part;
+}
+
+/// Returns true if a path is one of a route's.
+bool has_path(const Route& route, std::string_view path) {
+  std::string_view pattern = route.path;
+  if (std::ranges::count(pattern, '/') != std::ranges::count(path, '/')) return false;
+  while (!pattern.empty() || !path.empty()) {
+    const std::string_view wanted = take_part(pattern);
+    const std::string_view part = take_part(path);
+    if (wanted.starts_with('{') ? part.empty() : wanted != part) return false;
+  }
+  return true;
+}
 
 std::string_view method_of(const http::Request& request) {
   return request.method == "HEAD" ? std::string_view("GET") : request.method;
@@ -244,11 +299,15 @@ std::span<const Route> routes() {
   return kRoutes;
 }
 
+bool is_private(std::string_view path) {
+  return std::ranges::any_of(kRoutes, [path](const Route& route) { return route.is_private && has_path(route, path); });
+}
+
 std::optional<http::Response> method_refusal(const http::Request& request) {
   const std::string_view method = method_of(request);
   std::string allowed;
   for (const Route& route : kRoutes) {
-    if (route.path != request.path) continue;
+    if (!has_path(route, request.path)) continue;
     if (route.method == method) return std::nullopt;
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
   }
@@ -269,7 +328,7 @@ std::optional<std::string> status_message(const Facts& facts) {
 Answer answer_to(const http::Request& request, const Facts& facts) {
   if (auto refusal = method_refusal(request)) return std::move(*refusal);
   const auto route = std::ranges::find_if(
-      kRoutes, [&](const Route& each) { return each.path == request.path && each.method == method_of(request); });
+      kRoutes, [&](const Route& each) { return has_path(each, request.path) && each.method == method_of(request); });
   if (route != kRoutes.end()) return route->answer(request, facts);
   return problem(404, "Not found", request.path + " is not known; /api/v1/openapi.json lists all paths");
 }

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "daemon/http/server.hpp"
+#include "daemon/web/archive.hpp"
 #include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
 #include "daemon/web/pairings.hpp"
@@ -50,28 +51,31 @@ struct HistoryQuestion {
 /// A request for a WebSocket, for who may read.
 struct SocketOpening {};
 
-using Answer = std::variant<http::Response, Question, Pairing, Revocation, HistoryQuestion, SocketOpening>;
+using Answer =
+    std::variant<http::Response, Question, Pairing, Revocation, HistoryQuestion, SocketOpening, ArchiveRequest>;
 
 /// What those may do, too, who are let in nowhere else yet.
 inline constexpr std::string_view kPairPath = "/api/v1/pair";
 
-/// What only those who may change something can read: the log names files and addresses.
-inline constexpr std::string_view kLogPath = "/api/v1/log";
-
-/// The browsers that were paired; only those who may change something can read it, too.
+/// The browsers that were paired.
 inline constexpr std::string_view kSessionsPath = "/api/v1/sessions";
 
 /// What this machine can always read: service managers and monitors ask it.
 inline constexpr std::string_view kHealthPath = "/healthz";
 
-/// One thing that can be asked for.
+/// One thing that can be asked for. A part of its path in braces stands for any name.
 struct Route {
   std::string_view method, path;
   Answer (*answer)(const http::Request& request, const Facts& facts);
+  bool is_private = false;  ///< reading it takes the right to change something, too
 };
 
 /// All of them; openapi.json, which is served at /api/v1/openapi.json, describes each.
 std::span<const Route> routes();
+
+/// Returns true for a path that only those who may change something can read: the log names files and addresses,
+/// recordings show when people are there. Pure.
+bool is_private(std::string_view path);
 
 /// Returns the refusal (405) of a method that a path does not take, or nullopt. HEAD counts as GET. Pure.
 std::optional<http::Response> method_refusal(const http::Request& request);

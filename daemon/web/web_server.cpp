@@ -37,6 +37,9 @@ using std::chrono::steady_clock;
 /// New scenes are made, and wait for those that still fade.
 constexpr Nanoseconds kMaxChange = std::chrono::seconds(60);
 
+/// Reading the list of recordings, or the configuration.
+constexpr Nanoseconds kMaxArchive = std::chrono::seconds(60);
+
 /// The newest of what was published, decoded.
 struct News {
   wire::Sensors sensors;
@@ -116,6 +119,7 @@ class Server::Thread {
                 settings_.viewer),
         pairings_file_(settings_.pairings_file),
         site_(settings_.folder),
+        archive_(settings_.archive),
         sockets_(*io_, {.limits = settings_.sockets,
                         .tick_rate_hz = settings_.tick_rate_hz,
                         .is_token = [this](const std::string& token) { return access_ && access_->is_token(token); }}),
@@ -257,8 +261,7 @@ class Server::Thread {
       pairings_file_.save(pairings_);
     const bool is_own_health = request.path == kHealthPath && request.client.is_local && !request.is_forwarded;
     if (request.path != kPairPath && !(is_own_health && only_reads)) {
-      const bool takes_token =
-          settings_.reading_takes_token || request.path == kLogPath || request.path == kSessionsPath;
+      const bool takes_token = settings_.reading_takes_token || is_private(request.path);
       auto refusal = permission_refusal(request, trusted, trust, takes_token);
       if (refusal) return reply(std::move(*refusal));
     }
@@ -277,6 +280,10 @@ class Server::Thread {
       return revoke(revocation->id, address, std::move(reply));
     if (const auto* const question = std::get_if<HistoryQuestion>(&answer))
       return read_history(question->hours, trusted, std::move(reply));
+    if (auto* const wanted = std::get_if<ArchiveRequest>(&answer)) {
+      if (!only_reads) log_.info("http: {} asks for {}", address, request.path);
+      return ask_archive(std::move(*wanted), std::move(reply));
+    }
     if (!only_reads) {
       reply = [this, address, path = request.path, to_client = std::move(reply)](http::Response response) {
         if (response.status < 300) ++counts_.changes;
@@ -407,6 +414,19 @@ class Server::Thread {
     });
   }
 
+  void ask_archive(ArchiveRequest request, http::Reply reply) {
+    const auto pending = wait_for_reply(std::move(reply), ask_again("the disk of the recordings does not respond"),
+                                        std::max(settings_.patience, kMaxArchive));
+    archive_.answer(std::move(request),
+                    [io = std::weak_ptr(io_), asked = std::weak_ptr(pending)](http::Response response) {
+                      const auto alive = io.lock();
+                      if (!alive) return;
+                      asio::post(*alive, [asked, response = std::move(response)]() mutable {
+                        if (const auto still = asked.lock()) still->answer(std::move(response));
+                      });
+                    });
+  }
+
   /// What is waited for, with the answer if it does not come in time.
   std::shared_ptr<Pending> wait_for_reply(http::Reply reply, http::Response otherwise) {
     return wait_for_reply(std::move(reply), std::move(otherwise), settings_.patience);
@@ -436,6 +456,7 @@ class Server::Thread {
   Newest newest_;         ///< of newest_mutex_
   bool is_taken_ = true;  ///< of newest_mutex_; false: the thread will take it
   Site site_;
+  Archive archive_;
   Sockets sockets_;
   std::unique_ptr<http::Server> server_;
   const std::string endpoint_;

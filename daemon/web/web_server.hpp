@@ -12,6 +12,7 @@
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
 #include "daemon/values/moment.hpp"
+#include "daemon/web/archive.hpp"
 #include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
 #include "daemon/web/sockets.hpp"
@@ -33,6 +34,7 @@ struct Settings {
   std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
   std::vector<std::string> origins = {};  ///< "https://editor.p5js.org": whose pages may read, too
   std::filesystem::path folder = {};      ///< served at /site/ (Site); empty: none
+  ArchiveSettings archive = {};           ///< the daemon's files, for those who may change something (Archive)
   stream::AdmissionLimits clients = {};
   SocketLimits sockets = {};
   /// The folders of the guide as HTML and of the viewer as WebAssembly, read by the constructor.

@@ -7,6 +7,18 @@
 #include "drivers/windlog/stored_file.hpp"
 
 namespace yuragi::drivers::windlog {
+namespace {
+
+Result<void, Failure> copied(sqlite::Database& database, const std::filesystem::path& copy) {
+  auto vacuum = database.prepare("VACUUM INTO ?1");
+  if (!vacuum) return vacuum.error();
+  const std::string name = std::filesystem::absolute(copy).string();
+  vacuum->bind(1, std::string_view(name));
+  if (vacuum->step() != sqlite::Statement::Step::kDone) return database.failure();
+  return {};
+}
+
+}  // namespace
 
 Result<Reader, Failure> Reader::open(const std::filesystem::path& file, const std::stop_token& stop) {
   constexpr int kMaxLooks = 3;
@@ -56,12 +68,13 @@ Result<void, Failure> Reader::copy_to(const std::filesystem::path& copy) {
                        (file_.parent_path() / file_.stem()).string() + "*" + file_.extension().string() + " FOLDER`",
                    FailureKind::kUsage};
   }
-  auto vacuum = database_->prepare("VACUUM INTO ?1");
-  if (!vacuum) return vacuum.error();
-  const std::string name = std::filesystem::absolute(copy).string();
-  vacuum->bind(1, std::string_view(name));
-  if (vacuum->step() != sqlite::Statement::Step::kDone) return database_->failure();
-  return {};
+  return copied(*database_, copy);
+}
+
+Result<void, Failure> Reader::copy_file(const std::filesystem::path& file, const std::filesystem::path& copy) {
+  const auto opened = open_stored_file(file, {});
+  if (!opened) return opened.error();
+  return copied(*opened->database, copy);
 }
 
 }  // namespace yuragi::drivers::windlog

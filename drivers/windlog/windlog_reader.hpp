@@ -82,6 +82,9 @@ class Reader {
   /// series of files.
   Result<void, Failure> copy_to(const std::filesystem::path& copy);
 
+  /// The same of one file, also if it is one of a series.
+  static Result<void, Failure> copy_file(const std::filesystem::path& file, const std::filesystem::path& copy);
+
   /// Rows passed over since open() or the last seek().
   std::size_t skipped() const { return readings_->skipped(); }
 

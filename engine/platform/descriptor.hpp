@@ -21,6 +21,8 @@ class Descriptor {
 
   int get() const noexcept { return value_; }
   void reset() noexcept { close_if_open(value_); }
+  /// Returns the descriptor, which the caller closes.
+  int release() noexcept { return std::exchange(value_, -1); }
 
  private:
   int value_;

@@ -90,6 +90,14 @@ class Resample(unittest.TestCase):
                 self.write_part(name, [row for row in readings if 0 <= row[0] - 1000 * begin_s < 300_000])
             table = list(csv.DictReader(io.StringIO(yuragi("export", wall, "-o", "-", "--resample", BLOCK_S))))
 
+            copy = pathlib.Path(folder, "copy.windlog")
+            of_series = subprocess.run([YURAGI, "export", wall, "-o", copy], capture_output=True, text=True)
+            self.assertNotEqual(of_series.returncode, 0)
+            yuragi("export", wall, "-o", copy, "--this-file")
+            self.assertEqual(yuragi("export", copy, "-o", "-").count("\n"), yuragi("export", names[1], "-o", "-").count("\n"))
+            as_table = subprocess.run([YURAGI, "export", wall, "-o", "-", "--this-file"], capture_output=True, text=True)
+            self.assertEqual(as_table.returncode, 64, as_table.stderr)
+
         blocks = {}
         for ms, sensor, *values in readings:
             moment = BEGIN + datetime.timedelta(milliseconds=ms)

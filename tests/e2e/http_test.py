@@ -3,17 +3,21 @@
 
 usage: http_test.py FOLDER_OF_PROGRAMS
 """
+import io
 import json
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
+import tarfile
 import tempfile
 import time
 import unittest
 import urllib.error
+import urllib.parse
 import urllib.request
 
 from programs import HANG_S, Program, free_port
@@ -21,6 +25,7 @@ from programs import HANG_S, Program, free_port
 YURAGI = os.path.join(os.path.abspath(sys.argv.pop(1)), "yuragi")
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../config/prometheus/yuragi.dashboard.json"), encoding="utf-8") as file:
     DASHBOARD = json.load(file)
+COMPLETED = "wall-20260101T000000Z.windlog"  # beside wall.windlog
 SMALL_MEADOW = '[[scene]]\nname = "meadow"\nkind = "grass"\nblades_across = 20\nblades_deep = 20\n'
 
 
@@ -34,8 +39,8 @@ class Http(unittest.TestCase):
     def start_daemon(self, sensor, http=""):
         self.start_daemon_with(self.write_config('[http]\nlisten = "127.0.0.1:0"\n' + http + sensor + SMALL_MEADOW))
 
-    def start_daemon_with(self, file):
-        daemon = self.enterContext(Program(YURAGI, "run", "--config", file, "--listen", "127.0.0.1:0"))
+    def start_daemon_with(self, file, **options):
+        daemon = self.enterContext(Program(YURAGI, "run", "--config", file, "--listen", "127.0.0.1:0", **options))
         self.stream = daemon.wait_for(r"listening on (\S+)").group(1)
         self.base = daemon.wait_for(r"answering at (http://\S+)").group(1)
         return daemon
@@ -148,6 +153,149 @@ class Http(unittest.TestCase):
         recent = json.loads(self.wait_for("/api/v1/wind", 200, r'"measured_m_s": \[\s*\d'))
         self.assertTrue(all(age_s >= 0 for age_s in recent["age_s"]))
         self.assertEqual({len(values) for values in recent.values()}, {len(recent["age_s"])})
+
+    def start_recording_daemon(self, **options):
+        """A daemon with a completed recording beside the one that it writes; self.folder has both."""
+        self.folder = self.enterContext(tempfile.TemporaryDirectory())
+        table = os.path.join(self.folder, "table.csv")
+        with open(table, "w", encoding="ascii") as rows:
+            rows.write("time,speed,direction\n" + "".join(f"2026-01-01T00:{i // 60:02}:{i % 60:02}Z,3.{i % 10},200\n" for i in range(600)))
+        subprocess.run([YURAGI, "import", table, "-o", os.path.join(self.folder, COMPLETED)], check=True, capture_output=True)
+        file = self.write_config(f'[http]\nlisten = "127.0.0.1:0"\n[recording]\nfile = "{self.folder}/wall.windlog"\n'
+                                 '[[sensor]]\nname = "roof"\ndriver = "synthetic"\n' + SMALL_MEADOW)
+        daemon = self.start_daemon_with(file, **options)
+        self.wait_for("/api/v1/status", 200, r'"written": [1-9]')
+        return daemon
+
+    def bytes_of(self, path):
+        with urllib.request.urlopen(self.base + path, timeout=HANG_S) as answer:
+            return answer.read()
+
+    def ended(self, path):
+        """The job that a request begins, when it has ended."""
+        code, text = self.ask(path, {})
+        self.assertEqual(code, 202, text)
+        return self.ended_job(json.loads(text)["id"])
+
+    def ended_job(self, number):
+        return json.loads(self.wait_for(f"/api/v1/jobs/{number}", 200, '"state": "(done|failed)"'))
+
+    def test_recordings_are_listed_downloaded_verified_copied_and_reported(self):
+        self.start_recording_daemon()
+        recordings = json.loads(self.ask("/api/v1/recordings")[1])["recordings"]
+        self.assertEqual([one["name"] for one in recordings], ["wall.windlog", COMPLETED])
+        self.assertEqual([one["is_written"] for one in recordings], [True, False])
+        self.assertEqual(recordings[1]["last_s"] - recordings[1]["first_s"], 599)
+        with open(os.path.join(self.folder, COMPLETED), "rb") as completed:
+            self.assertEqual(self.bytes_of("/api/v1/recordings/" + COMPLETED), completed.read())
+
+        job = self.ended(f"/api/v1/recordings/{COMPLETED}/verify")
+        self.assertEqual((job["state"], job["result"]["is_sound"], job["result"]["files"][0]["file"]), ("done", True, COMPLETED))
+        self.assertEqual(job["result"]["files"][0]["readings"], 600)
+        self.assertNotIn(self.folder, json.dumps(job))
+
+        self.assertEqual(self.ask("/api/v1/recordings/wall.windlog")[0], 409)
+        job = self.ended("/api/v1/recordings/wall.windlog/copy")
+        copy = os.path.join(self.folder, "copy.windlog")
+        with open(copy, "wb") as file:
+            file.write(self.bytes_of(job["file"]["path"]))
+        self.assertEqual(subprocess.run([YURAGI, "verify", copy], capture_output=True).returncode, 0)
+        self.assertEqual([name for name in os.listdir(self.folder) if "-copy" in name], [])
+
+        if shutil.which("gnuplot"):
+            job = self.ended(f"/api/v1/recordings/{COMPLETED}/report")
+            self.assertEqual(job["file"]["name"], COMPLETED.replace("windlog", "html"))
+            self.assertIn(b"600 in 1 session", self.bytes_of(job["file"]["path"]))
+
+    def test_a_recording_is_only_found_by_its_name_in_the_list(self):
+        self.start_recording_daemon()
+        names = ["..", "../table.csv", "table.csv", "wall.windlog-wal", f"../{os.path.basename(self.folder)}/{COMPLETED}",
+                 f"{self.folder}/{COMPLETED}", "/etc/passwd", "--help", "wall.windlog\0", "absent.windlog", "%"]
+        for name in names:
+            quoted = urllib.parse.quote(name, safe="")
+            self.assertEqual(self.ask(f"/api/v1/recordings/{quoted}")[0], 404, name)
+            for command in ("verify", "report", "copy"):
+                self.assertEqual(self.ask(f"/api/v1/recordings/{quoted}/{command}", {})[0], 404, name)
+        self.assertEqual(self.ask(f"/api/v1/recordings/../{COMPLETED}")[0], 404)
+        self.assertEqual(self.ask("/api/v1/recordings/" + COMPLETED + "/verify", {"gap": 1})[0], 400)
+        for path in ("recordings", "recordings/" + COMPLETED, "jobs/1", "jobs/1/file", "configuration"):
+            self.assertEqual(self.ask("/api/v1/" + path, X_Forwarded_For="192.0.2.7")[0], 401, path)
+        for path in (f"recordings/{COMPLETED}/verify", "support-bundle"):
+            self.assertEqual(self.ask("/api/v1/" + path, {}, X_Forwarded_For="192.0.2.7")[0], 401, path)
+            self.assertEqual(self.ask("/api/v1/" + path, {}, Origin="https://evil.example")[0], 403, path)
+        self.assertEqual(self.ask("/api/v1/jobs/1")[0], 404, "none was begun")
+
+    def wait_for_process(self, file):
+        """The process whose number a program has written into a file."""
+        hangs = time.monotonic() + HANG_S
+        while time.monotonic() < hangs:
+            if os.path.exists(file) and os.path.getsize(file) > 0:
+                with open(file, encoding="ascii") as number:
+                    return int(number.read())
+        self.fail(f"no {file}")
+
+    def assert_gone(self, process):
+        hangs = time.monotonic() + HANG_S
+        while time.monotonic() < hangs:
+            try:
+                with open(f"/proc/{process}/stat", encoding="ascii") as about:
+                    if about.read().rsplit(")", 1)[1].split()[0] == "Z":
+                        return  # nobody waits for it
+            except (FileNotFoundError, ProcessLookupError):
+                return
+        self.fail(f"process {process} is there")
+
+    def test_one_job_runs_at_a_time_at_the_lowest_priority_and_a_killed_one_is_reported(self):
+        programs = self.enterContext(tempfile.TemporaryDirectory())
+        begun = os.path.join(programs, "begun")
+        with open(os.path.join(programs, "gnuplot"), "w", encoding="ascii") as slow:  # of a report
+            slow.write(f'#!/bin/sh\necho $PPID > "{begun}.new"; mv "{begun}.new" "{begun}"; exec sleep 1000\n')
+        os.chmod(slow.name, 0o755)
+        daemon = self.start_recording_daemon(env={**os.environ, "PATH": programs + ":" + os.environ["PATH"]})
+        report = f"/api/v1/recordings/{COMPLETED}/report"
+        number = json.loads(self.ask(report, {})[1])["id"]
+        child = self.wait_for_process(begun)
+        self.assertEqual(os.getpriority(os.PRIO_PROCESS, child), 19)
+        self.assertEqual(os.getpriority(os.PRIO_PROCESS, daemon.process.pid), os.getpriority(os.PRIO_PROCESS, 0), "the daemon's own stays")
+        code, text = self.ask(f"/api/v1/recordings/{COMPLETED}/verify", {})
+        self.assertEqual(code, 409)
+        self.assertIn(f"report of {COMPLETED}", json.loads(text)["detail"])
+        self.assertIn('"running"', self.ask(f"/api/v1/jobs/{number}")[1])
+        self.assertEqual(self.ask("/api/v1/status")[0], 200)
+        os.kill(child, signal.SIGKILL)
+        job = self.ended_job(number)
+        self.assertEqual(job["state"], "failed")
+        self.assertIn("killed by signal 9", job["message"])
+        self.assertEqual(self.ask(f"/api/v1/jobs/{number}/file")[0], 404)
+
+        os.remove(begun)
+        self.assertEqual(self.ask(report, {})[0], 202, "the next one")
+        child = self.wait_for_process(begun)
+        self.assertEqual(daemon.end(), 0)
+        self.assert_gone(child)
+
+    def test_the_support_bundle_and_the_configuration_withhold_secrets(self):
+        file = self.write_config('[http]\nlisten = "127.0.0.1:0"\n[[sensor]]\nname = "roof"\ndriver = "synthetic"\n'
+                                 f'[mqtt]\nhost = "127.0.0.1"\nport = {free_port()}\nuser = "yuragi"\npassword = "hunter2secret"\n' + SMALL_MEADOW)
+        self.start_daemon_with(file)
+        code, text = self.ask("/api/v1/configuration")
+        found = json.loads(text)
+        self.assertEqual((code, found["is_valid"], found["file"]), (200, True, "yuragi.toml"))
+        self.assertEqual(found["configuration"]["http"]["listen"], "127.0.0.1:0")
+        self.assertNotIn("hunter2secret", text)
+        self.assertIn("(secret)", text)
+        with open(file, "a", encoding="ascii") as config:
+            config.write("hight = 3\n")
+        found = json.loads(self.ask("/api/v1/configuration")[1])
+        self.assertEqual((found["is_valid"], found["configuration"]), (False, None))
+        self.assertIn("hight", found["findings"][0])
+
+        job = self.ended("/api/v1/support-bundle")
+        self.assertEqual(job["state"], "done", job)
+        with tarfile.open(fileobj=io.BytesIO(self.bytes_of(job["file"]["path"]))) as bundle:
+            texts = {os.path.basename(name): bundle.extractfile(name).read().decode() for name in bundle.getnames() if name.endswith(".txt") or name.endswith(".toml")}
+        self.assertIn("hight", texts["configuration-errors.txt"])
+        self.assertNotIn("hunter2secret", "".join(texts.values()))
 
     def test_the_guide_has_every_page_that_it_links_and_every_key(self):
         self.start_daemon('[[sensor]]\ndriver = "synthetic"\n')

@@ -11,7 +11,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -192,6 +192,93 @@ driver = "synthetic"
   await elsewhere.context().close();
 });
 
+/** The file that a button lets the browser store. */
+async function downloaded(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download", { timeout: HANG_MS }), page.getByRole("button", { name: button, exact: true }).click()]);
+  return { name: download.suggestedFilename(), bytes: fs.readFileSync(await download.path()) };
+}
+/** Imports a recording of so many seconds at 1 Hz. */
+function importRecording(file, seconds) {
+  const table = path.join(folder, "wind.csv");
+  const rows = Array.from({ length: seconds }, (_, i) => `2026-01-01T00:${String(Math.floor(i / 60)).padStart(2, "0")}:${String(i % 60).padStart(2, "0")}Z,3.${i % 10},200`);
+  fs.writeFileSync(table, ["time,speed,direction", ...rows, ""].join("\n"));
+  execFileSync(path.join(programs, "yuragi"), ["import", table, "-o", file]);
+}
+
+test("recordings are downloaded, verified and reported, and a support bundle is made", { timeout: 4 * HANG_MS }, async () => {
+  const archive = path.join(folder, "archive");
+  fs.mkdirSync(archive);
+  const completed = "wall-20260101T000000Z.windlog";
+  importRecording(path.join(archive, completed), 600);
+  const recording = await startDaemon(configured("archive.toml", `
+[http]
+listen = "127.0.0.1:${archivePort}"
+[recording]
+file = "${path.join(archive, "wall.windlog")}"
+[[sensor]]
+name = "wall"
+driver = "synthetic"
+`));
+  const base = `http://127.0.0.1:${archivePort}/`;
+  const page = await open(base, { viewport: { width: 320, height: 800 }, colorScheme: "dark" });
+  await page.click("#archive > summary");
+  await page.waitForSelector("#archive-list li:nth-child(2)");
+  assert.deepEqual(await page.$$eval("#archive-list h3", (all) => all.map((one) => one.textContent)), ["wall.windlog", completed]);
+  assert.match(await page.textContent("#archive-list li:nth-child(1) .reason"), /, being written$/);
+  assert.match(await page.textContent("#archive-list li:nth-child(2) .reason"), /^\d+ kB, .* to .*2026/);
+
+  const copy = await downloaded(page, "Download: wall.windlog");
+  assert.equal(copy.name, "wall.windlog");
+  assert.equal(copy.bytes.subarray(0, 15).toString(), "SQLite format 3");
+  const file = await downloaded(page, "Download: " + completed);
+  assert.equal(file.name, completed);
+  assert.ok(file.bytes.equals(fs.readFileSync(path.join(archive, completed))));
+
+  await page.getByRole("button", { name: "Verify: " + completed }).click();
+  await page.waitForSelector("#archive-list li:nth-child(2) .sound:text('Sound. Readings: 600, files: 1, gaps: 0')");
+  const [job] = await Promise.all([page.waitForResponse((response) => response.url().endsWith("/report")),
+    page.getByRole("button", { name: "Report: " + completed }).click()]);
+  assert.equal(job.status(), 202);
+  await page.waitForSelector("#archive-list li:nth-child(2) .result a");
+  const [report] = await Promise.all([page.context().waitForEvent("page"), page.click("#archive-list li:nth-child(2) .result a")]);
+  await report.waitForSelector("svg, img");
+  assert.match(await report.textContent("body"), /600 in 1 session/);
+  assert.equal(await report.evaluate(() => window.origin), "null", "a report has no rights of the page");
+  await report.close();
+  const verification = { is_sound: false, files: [{ file: "wall.windlog", damage: [HOSTILE], readings: 1 }], missing: ["gone.windlog"], gaps: [] };
+  await page.route("**/verify", (route) => route.fulfill({ status: 202, json: { id: "1", state: "done", message: "", result: verification, file: null, run_for_s: 1 } }));
+  await page.getByRole("button", { name: "Verify: " + completed }).click();
+  await page.waitForSelector("#archive-list .error:text('Damaged')");
+  assert.deepEqual(await page.$$eval("#archive-list .result li", (all) => all.map((one) => one.textContent)), [`wall.windlog: ${HOSTILE}`, "gone.windlog: missing"]);
+  assert.equal(await isWider(page, 320), false);
+  await assertAccessible(page, "recordings");
+  await screenshot(page, "recordings-320-dark");
+
+  await page.click("#support > summary");
+  await page.waitForSelector("#support .configuration div");
+  const shown = () => page.$$eval("#support .configuration > div:not([hidden])", (all) => all.map((one) => one.textContent));
+  assert.ok((await shown()).includes("sensors.wall.driversynthetic"), (await shown()).join());
+  await page.fill("#configuration-filter", "http.LISTEN");
+  assert.deepEqual(await shown(), [`http.listen127.0.0.1:${archivePort}`]);
+  const bundle = await downloaded(page, "Make a support bundle");
+  assert.equal(bundle.name, "yuragi-support.tar.gz");
+  assert.deepEqual([...bundle.bytes.subarray(0, 2)], [0x1f, 0x8b]);
+  await page.fill("#configuration-filter", "");
+  assert.equal(await isWider(page, 320), false);
+  await assertAccessible(page, "support");
+  await screenshot(page, "support-320-dark");
+  assert.deepEqual(page.complaints.filter((complaint) => !complaint.includes("503")), []); // where the machine has much to do
+  await page.context().close();
+
+  const elsewhere = await open(base, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  await elsewhere.click("#archive > summary");
+  await elsewhere.waitForSelector("#archive-note:text('paired')");
+  await elsewhere.click("#support > summary");
+  await elsewhere.waitForSelector("#support .empty:text('paired')");
+  await elsewhere.context().close();
+  await kill(recording);
+});
+
 test("the keyboard shows and hides a scene", { timeout: 2 * HANG_MS }, async () => {
   const page = await open(url);
   const meadow = page.getByRole("switch", { name: /meadow/ });
@@ -230,7 +317,7 @@ const LANGUAGES = [
 ];
 /** Texts of ours that do not change while the page is open. */
 const ownTexts = (page) => page.evaluate(() => [
-  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
+  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #support h3, #support button, #support .empty, #support label, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
   ...[...document.querySelectorAll("[data-label], .trace")].map((one) => one.ariaLabel),
 ]);
 const isWider = (page, width) => page.evaluate((width) => document.documentElement.scrollWidth > width, width);
@@ -392,11 +479,8 @@ test("a daemon that is killed is told at once, nothing old is shown, and it is b
 });
 
 test("a recording that plays is paused and resumed", { timeout: 2 * HANG_MS }, async () => {
-  const table = path.join(folder, "wind.csv");
-  const rows = Array.from({ length: 300 }, (_, i) => `2026-01-01T00:${String(Math.floor(i / 60)).padStart(2, "0")}:${String(i % 60).padStart(2, "0")}Z,3.${i % 10},200`);
-  fs.writeFileSync(table, ["time,speed,direction", ...rows, ""].join("\n"));
   const recording = path.join(folder, "summer.windlog");
-  execFileSync(path.join(programs, "yuragi"), ["import", table, "-o", recording]);
+  importRecording(recording, 300);
   await startDaemon(configured("player.toml", `
 [http]
 listen = "127.0.0.1:${playerPort}"

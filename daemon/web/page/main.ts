@@ -1,4 +1,5 @@
 // The page: the daemon's state goes into the views; a clock keeps ages correct between two states.
+import { ArchiveView } from "./archive_view";
 import { Change } from "./change";
 import { by_id, element, set_text } from "./element";
 import { HealthView } from "./health_view";
@@ -13,6 +14,7 @@ import { ScenesView } from "./scenes_view";
 import { Knowledge, verdict_of } from "./sentence";
 import { SensorsView } from "./sensors_view";
 import { Player, Scene, Status } from "./status";
+import { SupportView } from "./support_view";
 import { DAEMON_LANGUAGE, fill_in_texts, offer_languages, texts } from "./texts";
 import { WindView } from "./wind_view";
 
@@ -31,6 +33,8 @@ const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
 const history = new HistoryView(by_id("history"));
 const log = new LogView(by_id("log") as HTMLDetailsElement, by_id("log-note"), by_id("log-lines"));
+const archive = new ArchiveView(by_id("archive") as HTMLDetailsElement, by_id("archive-note"), by_id("archive-list"), change);
+const support = new SupportView(by_id("support") as HTMLDetailsElement, change);
 const look = new LookView(by_id("look") as HTMLDetailsElement, change);
 const health = new HealthView(by_id("health"));
 
@@ -129,6 +133,8 @@ void listen({
       void wind.fill();
       history.ask_now();
       log.ask_now();
+      archive.ask_now();
+      support.ask_now();
       look.ask_now();
     }
   },

@@ -133,6 +133,42 @@ export interface History {
   }[];
 }
 
+/** A file of the daemon's recording. */
+export interface Recording {
+  name: string;
+  bytes: number;
+  first_s: number | null;
+  last_s: number | null;
+  is_written: boolean;
+}
+
+/** What `yuragi verify --json` prints. */
+export interface Verification {
+  is_sound: boolean;
+  files: { file: string; damage: string[]; readings: number }[];
+  missing: string[];
+  gaps: { sensor: string; length_s: number }[];
+}
+
+/** A command that the daemon carries out. */
+export interface Job {
+  id: string;
+  kind: string;
+  recording: string | null;
+  state: "running" | "done" | "failed";
+  run_for_s: number;
+  message: string;
+  result: Verification | null;
+  file: { path: string; name: string; bytes: number } | null;
+}
+
+export interface Configuration {
+  file: string;
+  is_valid: boolean;
+  findings: string[];
+  configuration: object | null;
+}
+
 export interface LogLine {
   time_s: number;
   level: string;

@@ -48,13 +48,19 @@ export function clock_text(time: Date): string {
   return time.toLocaleTimeString("en-GB", { hour12: false });
 }
 
+/** "23 Nov 2026, 14:03" of the calendar and clock here */
+export function date_text(time_s: number): string {
+  return new Date(1000 * time_s).toLocaleString(language, { dateStyle: "medium", timeStyle: "short" });
+}
+
 /** "1.5 ms"; with two digits behind the point: "1.50 ms" */
 export function milliseconds_text(duration_s: number, digits: 0 | 1 | 2 = duration_s < 0.01 ? 1 : 0): string {
   return number_text(duration_s * 1e3, digits) + " ms";
 }
 
-/** "12.3 GB" */
+/** "56 kB", "12.3 GB" */
 export function bytes_text(bytes: number): string {
+  if (bytes < 1e6) return number_text(bytes / 1e3, 0) + " kB";
   if (bytes < 1e9) return number_text(bytes / 1e6, 0) + " MB";
   return number_text(bytes / 1e9, bytes < 1e11 ? 1 : 0) + " GB";
 }

@@ -142,6 +142,32 @@ TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
   EXPECT_EQ(json::parse(none.body)["players"], json::array());
 }
 
+TEST_F(RoutesTest, ANameIsOnePartOfAPath) {
+  const auto request = [this](const std::string& method, const std::string& path) {
+    return answer_to({.method = method, .path = path, .body = "{}"}, facts_);
+  };
+  const Answer verify = request("POST", "/api/v1/recordings/wall%20of.windlog/verify");
+  ASSERT_TRUE(std::holds_alternative<ArchiveRequest>(verify));
+  EXPECT_EQ(std::get<ArchiveRequest>(verify).what, ArchiveRequest::What::kVerify);
+  EXPECT_EQ(std::get<ArchiveRequest>(verify).name, "wall of.windlog");
+  EXPECT_EQ(std::get<ArchiveRequest>(request("GET", "/api/v1/recordings")).name, "");
+  EXPECT_EQ(std::get<ArchiveRequest>(request("GET", "/api/v1/jobs/12/file")).name, "12");
+  for (const char* path :
+       {"/api/v1/recordings/", "/api/v1/recordings//verify", "/api/v1/recordings/a/b/verify", "/api/v1/jobs/1/file/"})
+    EXPECT_EQ(said(request("GET", path)).status, 404U) << path;
+  EXPECT_EQ(said(request("GET", "/api/v1/recordings/a/verify")).status, 405U);
+  EXPECT_EQ(
+      said(answer_to({.method = "POST", .path = "/api/v1/support-bundle", .body = R"({"out":"x"})"}, facts_)).status,
+      400U);
+}
+TEST_F(RoutesTest, WhatShowsWhenPeopleAreThereIsPrivate) {
+  for (const char* path : {"/api/v1/log", "/api/v1/sessions", "/api/v1/recordings", "/api/v1/recordings/wall.windlog",
+                           "/api/v1/jobs/1", "/api/v1/jobs/1/file", "/api/v1/configuration"})
+    EXPECT_TRUE(is_private(path)) << path;
+  for (const char* path : {"/", "/healthz", "/api/v1/status", "/api/v1/history", "/ws"})
+    EXPECT_FALSE(is_private(path)) << path;
+}
+
 TEST_F(RoutesTest, Sessions_AreListedWhileTheyAreValid) {
   EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
   Pairings pairings;

@@ -255,6 +255,33 @@ TEST_F(WebServerTest, AFolderOfOwnPages) {
   EXPECT_THAT(client.post("/site/", "{}", kJson), StartsWith("HTTP/1.1 405"));
   EXPECT_THAT(Client(server_.local_endpoint()).get("/site/"), HasSubstr("set [http] folder"));
 }
+TEST_F(WebServerTest, ARecordingIsForWhoMayChangeSomething_AndIsSentInPieces) {
+  const test::TemporaryFolder folder;
+  const std::string recorded(3'000'000, 'r');
+  const std::string path = "/api/v1/recordings/wall-20261123T000000Z.windlog";
+  std::ofstream(folder.path() / "wall-20261123T000000Z.windlog") << recorded;
+  Settings recording = settings();
+  recording.archive.recording = folder.path() / "wall.windlog";
+  Server server(std::move(recording));
+  Client client(server.local_endpoint());
+  for (int i = 0; i < 2; ++i) {
+    const std::string answer = client.get(path);
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 200"));
+    EXPECT_TRUE(answer.ends_with("\r\n\r\n" + recorded));
+  }
+  client.send("HEAD " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(client.answer(), AllOf(HasSubstr("Content-Length: 3000000"), Not(HasSubstr("rrr"))));
+
+  Client elsewhere(server.local_endpoint());
+  const std::string forwarded = "X-Forwarded-For: 192.168.1.30\r\n";
+  for (const std::string& one :
+       {path, std::string("/api/v1/recordings"), std::string("/api/v1/jobs/1"), std::string("/api/v1/configuration")})
+    EXPECT_THAT(elsewhere.get(one, forwarded), StartsWith("HTTP/1.1 401")) << one;
+  EXPECT_THAT(elsewhere.post(path + "/verify", "{}", kJson + forwarded), StartsWith("HTTP/1.1 401"));
+  EXPECT_THAT(elsewhere.post(path + "/verify", "{}", "Content-Type: text/plain\r\n"), StartsWith("HTTP/1.1 415"));
+  Client(server.local_endpoint()).send("GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");  // and hangs up
+  EXPECT_THAT(elsewhere.get("/api/v1/recordings"), HasSubstr("\"bytes\": 3000000"));
+}
 TEST_F(WebServerTest, WithATokenRightsComeFromItWhateverTheAddress) {
   Settings with_token = settings();
   with_token.takes_token = true;
