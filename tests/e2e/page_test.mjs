@@ -305,6 +305,32 @@ test("a select, a field and a switch set values; those of others appear; one tha
   await page.context().close();
 });
 
+test("a wind by hand is in the sentence with its time until it is stopped, and so is a blackout", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await waitForSentence(page, LIVE);
+  const speed = page.getByRole("slider", { name: "Wind speed" });
+  await speed.focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await speed.getAttribute("aria-valuetext"), "8.5 m/s");
+  assert.ok(await page.getByRole("button", { name: "Stop" }).isDisabled());
+  await page.selectOption("#hand-time", "3600");
+  await page.getByRole("button", { name: "Start this wind" }).click();
+  await waitForSentence(page, /^The wind is set by hand, \d+ (min|h) left: 8\.5 m\/s from the west$/);
+  assert.equal(await page.getAttribute("#verdict", "data-light"), "other");
+  await page.selectOption("#dark-time", { label: "until somebody ends it" });
+  await page.getByRole("button", { name: "Blackout" }).click();
+  await waitForSentence(page, /^The walls are dark by hand, until somebody ends it\. The wind is set by hand, /);
+  await page.waitForSelector("#attention li");
+  await assertAccessible(page, "by hand");
+  await screenshot(page, "hand-1920-light");
+  await page.getByRole("button", { name: "Stop" }).click();
+  await waitForSentence(page, /^The walls are dark by hand, until somebody ends it$/);
+  await page.getByRole("button", { name: "Lights on" }).click();
+  await waitForSentence(page, LIVE);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
 test("in each language that the browser asks for, on a phone", { timeout: 4 * HANG_MS }, async () => {
   let english;
   for (const { locale, live, same } of LANGUAGES) {
