@@ -28,6 +28,12 @@ name = "lawn"
 kind = "grass"
 blades_across = 20
 blades_deep = 20
+[[camera]]
+name = "gate"
+scene = "meadow"
+[[camera]]
+name = "pond"
+scene = "lawn"
 `;
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-page-"));
 const running = new Set();
@@ -87,6 +93,10 @@ async function assertAccessible(page, what) {
     return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
   }, axe);
   assert.deepEqual(faults, [], what);
+}
+/** Waits until the daemon is so. */
+async function waitFor(holds) {
+  for (const hangs = Date.now() + HANG_MS; !(await holds()); ) assert.ok(Date.now() < hangs, String(holds));
 }
 const screenshot = (page, name) => page.screenshot({ path: path.join(screenshots, name + ".png"), fullPage: true });
 
@@ -230,7 +240,7 @@ const LANGUAGES = [
 ];
 /** Texts of ours that do not change while the page is open. */
 const ownTexts = (page) => page.evaluate(() => [
-  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
+  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #scenes .fade label, #fade option, .every, #hand label, #hand option, #hand button, #look > .line label")].map((one) => one.textContent),
   ...[...document.querySelectorAll("[data-label], .trace")].map((one) => one.ariaLabel),
 ]);
 const isWider = (page, width) => page.evaluate((width) => document.documentElement.scrollWidth > width, width);
@@ -327,6 +337,25 @@ test("a wind by hand is in the sentence with its time until it is stopped, and s
   await waitForSentence(page, /^The walls are dark by hand, until somebody ends it$/);
   await page.getByRole("button", { name: "Lights on" }).click();
   await waitForSentence(page, LIVE);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a camera is chosen for all viewers, and that of the time of day again", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await openLook(page);
+  const cameraIs = async (name, byHand) => {
+    const { camera, by_hand } = await (await fetch(url + "api/v1/status")).json();
+    return camera === name && (by_hand.camera !== null) === byHand;
+  };
+  const choose = async (label) => (await Promise.all([isSent(page), page.getByLabel("Camera").selectOption({ label })]))[0].status();
+  assert.ok(await cameraIs("gate", false));
+  assert.equal(await choose("pond"), 200);
+  await waitFor(() => cameraIs("pond", true));
+  await page.waitForFunction(() => document.getElementById("camera").value === "pond");
+  assert.equal(await choose("by the time of day"), 200);
+  await waitFor(() => cameraIs("gate", false));
+  await page.waitForFunction(() => document.getElementById("camera").value === "");
   assert.deepEqual(page.complaints, []);
   await page.context().close();
 });
