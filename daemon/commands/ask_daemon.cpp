@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "daemon/settings/own_token.hpp"
+#include "daemon/stream/control_client.hpp"
 #include "daemon/stream/stream_client.hpp"
 
 namespace yuragi::daemon::commands {
@@ -68,6 +69,14 @@ Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& addr
     if (left < Nanoseconds{0} && collector.has_answered()) break;
   }
   return std::move(collector.status());
+}
+
+wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control,
+                                Nanoseconds timeout) {
+  const settings::OwnToken own = settings::own_token(address);
+  wire::ControlReply reply = stream::ask(address, client, control, timeout, own.token).value();
+  if (!reply.done && !own.hint.empty()) reply.message += "; " + own.hint;
+  return reply;
 }
 
 }  // namespace yuragi::daemon::commands

@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
+#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
-#include "daemon/commands/send_control.hpp"
 #include "daemon/settings/config_edit.hpp"
 #include "daemon/state/parameter_json.hpp"
 

@@ -7,10 +7,10 @@
 
 #include <fmt/core.h>
 
+#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
-#include "daemon/commands/send_control.hpp"
 #include "daemon/state/sensor_json.hpp"
 #include "daemon/tools/sensors/player_text.hpp"
 

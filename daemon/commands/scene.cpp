@@ -4,12 +4,12 @@
 
 #include <fmt/core.h>
 
+#include "daemon/commands/ask_daemon.hpp"
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/parameter_commands.hpp"
 #include "daemon/commands/run_options.hpp"
-#include "daemon/commands/send_control.hpp"
 #include "daemon/state/sensor_json.hpp"
 
 namespace yuragi::daemon::commands {

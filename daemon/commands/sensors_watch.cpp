@@ -225,9 +225,10 @@ void add_sensors_watch(CLI::App& sensors) {
       "Raw messages need [stream] control. Clients of other machines get the names of files without folders.\n"
       "--json: an object a line: wind (speed_m_s, direction_deg, source, ...), sensors (a list: name, driver, state,\n"
       "state_reason, value (what its speed is), reads_times_group (1: not levelled), speed_m_s, direction_deg,\n"
-      "gust_m_s, age_s, interval_s, frames, readings, reconnects, refused, ...), shaping, recorder (null: nothing is\n"
-      "recorded), clients, gust_reach (across, along), late_ticks, recent_ticks, recent_skipped_ticks, io_lateness\n"
-      "and tick_lateness (p50_s, p99_s, max_s), animation (running_s, period_s, tick_s, carried_times, scenes; null:\n"
+      "gust_m_s, age_s, interval_s, frames, readings, reconnects, refused, ...), shaping, by_hand (wind, blackout and\n"
+      "camera, null: not set), cameras, camera, recorder (null: nothing is recorded), clients, gust_reach (across,\n"
+      "along), late_ticks, recent_ticks, recent_skipped_ticks, io_lateness and tick_lateness (p50_s, p99_s, max_s),\n"
+      "animation (running_s, period_s, tick_s, carried_times, scenes; null:\n"
       "none). With --raw: sensor, utc_ns, mono_ns, is_received, hex, length_bytes, lost. Unknown values are null.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       for `yuragi decode FORMAT --hex`");

@@ -32,6 +32,7 @@
 #include "daemon/sensing/recording_folders.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/service/config_check.hpp"
+#include "daemon/service/hand_director.hpp"
 #include "daemon/service/hangup.hpp"
 #include "daemon/service/lead_in.hpp"
 #include "daemon/service/moment_source.hpp"
@@ -102,6 +103,12 @@ std::vector<look::Camera> cameras_of(const settings::Config& config) {
   return cameras;
 }
 
+std::vector<std::string> names_of(const std::vector<look::Camera>& cameras) {
+  std::vector<std::string> names;
+  for (const look::Camera& camera : cameras) names.push_back(camera.name);
+  return names;
+}
+
 /// The page's address for other machines. `endpoint`: where it listens.
 std::string page_url(const std::string& endpoint) {
   Address address = parse_address(endpoint).value();
@@ -135,6 +142,7 @@ class Service::Io {
         clock_of_cameras_(config.clock),
         players_(config.stream.control, hub_.players()),
         folders_(config, options.record),
+        hand_(config.stream.control, names_of(cameras_)),
         control_(config.stream.control),
         reload_(config, reload_parts(config)),
         parameters_(reload_, animation_ ? &director_ : nullptr, config.stream.control,
@@ -435,6 +443,8 @@ class Service::Io {
     control_ = next.stream.control;
     director_.allow(control_);
     players_.allow(control_);
+    hand_.allow(control_);
+    hand_.set_cameras(names_of(cameras_));
     parameters_.allow(control_);
     show_look(next.look);
     if (alerts_) alerts_->change(next.alerts);
@@ -463,11 +473,21 @@ class Service::Io {
 
   wire::ControlReply carry_out(const wire::Control& control, bool is_local) {
     if (control.player) return players_.handle(*control.player, is_local);
+    if (animation_ && control.hand) return set_by_hand(*control.hand, is_local);
     if (animation_) {
       if (!control.scene.empty()) parameters_.note_change();
       return director_.handle(control, is_local);
     }
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
+  }
+
+  /// Viewers need not wait for the next status. Who it was is logged by the stream or by web.
+  wire::ControlReply set_by_hand(const wire::HandCommand& command, bool is_local) {
+    wire::ControlReply reply = hand_.handle(command, is_local, clock_.now().mono);
+    if (command.part == wire::HandPart::kReport || !reply.done) return reply;
+    spdlog::info("by hand: {}", reply.message);
+    publish_status();
+    return reply;
   }
 
   /// Feeds show and hide scenes by a right of their own.
@@ -499,7 +519,7 @@ class Service::Io {
   wind::ground::DrivingWind next_real_wind() { return {hub_.advance(), hub_.ground(), hub_.stroke()}; }
 
   wind::ground::DrivingWind shaped(wind::ground::DrivingWind wind) {
-    shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live());
+    shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live(), hand_.shaping(clock_.now().mono));
     return wind;
   }
 
@@ -604,7 +624,12 @@ class Service::Io {
     status.shaping = shaper_.status();
     status.look = look_;
     status.cameras = cameras_;
-    status.camera = look::camera_at(cameras_, clock_of_cameras_.hour_of_day(clock_.now().utc));
+    for (const std::string& ended : hand_.take_ended(clock_.now().mono)) spdlog::info("by hand: {}", ended);
+    status.by_hand = hand_.status(clock_.now().mono);
+    if (const std::string text = by_hand_text(status.by_hand); !text.empty())
+      status.shaping.text = status.shaping.text.empty() ? text : text + "; " + status.shaping.text;
+    status.camera = hand_.camera(clock_.now().mono)
+                        .value_or(look::camera_at(cameras_, clock_of_cameras_.hour_of_day(clock_.now().utc)));
     status.parameters_revision = parameters_.revision();
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
@@ -717,6 +742,7 @@ class Service::Io {
   settings::LocalClock clock_of_cameras_;
   sensing::PlayerDirector players_;
   sensing::RecordingFolders folders_;
+  HandDirector hand_;
   Latest<wind::ground::DrivingWind> wind_;
   std::unique_ptr<animation::Loop> loop_;
   std::unique_ptr<animation::SceneExchange> scenes_;

@@ -103,11 +103,12 @@ void WindShaper::change(const settings::ShapingConfig& shaping) {
   hours_ = shaping.hours;
 }
 
-void WindShaper::shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live) {
+void WindShaper::shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live,
+                       const wind::shaping::ByHand& by_hand) {
   const MonoTime now = wind.state.time;
   const bool is_time_to_look = !has_looked_ || now - looked_ >= kLookAtHoursEvery;
   if (is_time_to_look) look_at_hours(now, utc);
-  shaping_.shape(wind, is_open_, is_any_live);
+  shaping_.shape(wind, is_open_, is_any_live, by_hand);
   log_ceiling(shaping_.report(), now);
   if (!is_time_to_look) return;
   log_changes();

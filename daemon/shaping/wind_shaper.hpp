@@ -50,7 +50,8 @@ class WindShaper {
 
   /// Changes the real wind into the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
   /// `is_any_live`: a sensor is live. Otherwise (the fall-back recording plays) nothing is learnt of the site.
-  void shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live);
+  /// `by_hand`: what people have set at this moment.
+  void shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live, const wind::shaping::ByHand& by_hand = {});
 
   /// The effects at present, as of the last shape().
   wire::Shaping status() const;

@@ -44,6 +44,9 @@ std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
   all.insert(all.end(), sensors.troubles.begin(), sensors.troubles.end());
   if (sensors.recorder) add_recorder_attention(all, *sensors.recorder);
   if (const std::string stutter = stutter_of(sensors); !stutter.empty()) all.push_back(stutter);
+  if (sensors.by_hand.blackout && !sensors.by_hand.blackout->left_s) {
+    all.push_back("the walls are dark by hand until somebody ends it (`yuragi hand release blackout`)");
+  }
   if (sensors.io_lateness && sensors.io_lateness->p99_s > kLateIo_s) {
     all.push_back(fmt::format(
         "the thread of sensors and clients is late: 1 % of its steps of the last 10 minutes by more than {:.0f} ms",

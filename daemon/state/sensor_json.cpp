@@ -93,6 +93,17 @@ ordered_json json_of_shaping(const wire::Shaping& shaping) {
           {"text", shaping.text}};
 }
 
+ordered_json json_of_hold(const std::optional<wire::Hold>& hold) {
+  if (!hold) return nullptr;
+  return {{"left_s", json_or_null(hold->left_s)}};
+}
+
+ordered_json json_of_cameras(const wire::Sensors& sensors) {
+  ordered_json names = ordered_json::array();
+  for (const look::Camera& camera : sensors.cameras) names.push_back(camera.name);
+  return names;
+}
+
 ordered_json json_of_lateness(const std::optional<wire::Lateness>& lateness) {
   if (!lateness) return nullptr;
   return {{"p50_s", std::min(lateness->p50_s, lateness->max_s)},
@@ -147,6 +158,10 @@ ordered_json sensors_json(const wire::Sensors& sensors) {
   return {{"wind", json_of_wind(sensors.wind)},
           {"sensors", all},
           {"shaping", json_of_shaping(sensors.shaping)},
+          {"by_hand", by_hand_json(sensors.by_hand)},
+          {"cameras", json_of_cameras(sensors)},
+          {"camera", sensors.camera < sensors.cameras.size() ? ordered_json(sensors.cameras[sensors.camera].name)
+                                                             : ordered_json(nullptr)},
           {"recorder", json_of_recorder(sensors.recorder)},
           {"clients",
            {{"connected", sensors.clients},
@@ -162,6 +177,18 @@ ordered_json sensors_json(const wire::Sensors& sensors) {
           {"tick_lateness", json_of_lateness(sensors.tick_lateness)},
           {"animation", json_of_animation(sensors.animation)},
           {"feeds", json_of_feeds(sensors.feeds)}};
+}
+
+ordered_json by_hand_json(const wire::ByHand& by_hand) {
+  ordered_json wind = nullptr;
+  if (by_hand.wind) {
+    wind = {{"speed_m_s", by_hand.wind->speed_m_s},
+            {"direction_deg", by_hand.wind->direction_deg},
+            {"left_s", by_hand.wind->left_s}};
+  }
+  return {{"wind", std::move(wind)},
+          {"blackout", json_of_hold(by_hand.blackout)},
+          {"camera", json_of_hold(by_hand.camera)}};
 }
 
 ordered_json raw_trace_json(const wire::RawTrace& trace) {

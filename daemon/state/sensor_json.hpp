@@ -14,6 +14,9 @@ nlohmann::ordered_json sensors_json(const wire::Sensors& sensors);
 /// One message to or from a device; its bytes as hexadecimal digits.
 nlohmann::ordered_json raw_trace_json(const wire::RawTrace& trace);
 
+/// What people have set by hand.
+nlohmann::ordered_json by_hand_json(const wire::ByHand& by_hand);
+
 nlohmann::ordered_json scenes_json(const std::vector<wire::SceneState>& scenes);
 nlohmann::ordered_json players_json(const std::vector<wire::PlayerState>& players);
 

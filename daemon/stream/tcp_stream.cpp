@@ -280,7 +280,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
         answer ? answer(wish, is_trusted_)
                : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
     const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kReport;
-    if (!wish.scene.empty() || changes_players) {
+    const bool sets_by_hand = wish.hand && wish.hand->part != wire::HandPart::kReport;
+    if (!wish.scene.empty() || changes_players || sets_by_hand) {
       feed_->log->info("client {} {}: {}", endpoint_, client_name_, shortened(reply.message, kShownReplyCharacters));
     }
     send_reply(reply);

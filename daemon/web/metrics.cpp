@@ -147,6 +147,14 @@ void add_clients(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
                     .take());
 }
 
+void add_by_hand(std::vector<MetricFamily>& all, const wire::ByHand& by_hand) {
+  all.push_back(gauge("yuragi_by_hand", "1 for what somebody has set by hand, for a time")
+                    .add(by_hand.wind ? 1.0 : 0.0, {{"part", "wind"}})
+                    .add(by_hand.blackout ? 1.0 : 0.0, {{"part", "blackout"}})
+                    .add(by_hand.camera ? 1.0 : 0.0, {{"part", "camera"}})
+                    .take());
+}
+
 void add_web(std::vector<MetricFamily>& all, const Counts& counts) {
   all.push_back(counter("yuragi_http_pairings_total", "Attempts of browsers to pair, by result")
                     .add(counts.pairings, {{"result", "paired"}})
@@ -189,6 +197,7 @@ std::string metrics_text(const wire::Sensors& sensors, const std::string& softwa
   add_sensors(all, sensors);
   add_lateness(all, sensors);
   if (sensors.animation) add_animation(all, *sensors.animation);
+  add_by_hand(all, sensors.by_hand);
   add_clients(all, sensors);
   add_feeds(all, sensors.feeds);
   add_web(all, counts);

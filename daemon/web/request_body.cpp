@@ -49,6 +49,14 @@ class Body {
     refuse(key, fmt::format("a number from {} to {}", least, most));
     return otherwise;
   }
+  /// Null: nullopt.
+  std::optional<double> number_or_null(const char* key, double otherwise, double least, double most) {
+    if (object_.is_object() && object_.contains(key) && object_[key].is_null()) {
+      object_.erase(key);
+      return std::nullopt;
+    }
+    return number(key, otherwise, least, most);
+  }
   std::vector<std::string> texts(const char* key, std::size_t most) {
     const nlohmann::json* value = take(key);
     if (value == nullptr) return {};
@@ -116,6 +124,22 @@ struct ActionName {
   std::string_view name;
   wire::PlayerAction action;
 };
+constexpr double kMinHold_s = 1.0;
+constexpr double kUsualHold_s = 3600.0;
+
+/// What blackout and camera have in common.
+Result<wire::HandCommand, Failure> hold_of(Body body, wire::HandPart part) {
+  wire::HandCommand command{.part = part};
+  command.is_release = body.flag("release", false);
+  if (part == wire::HandPart::kCamera) {
+    command.camera = body.text("camera", "");
+    body.require(command.is_release || !command.camera.empty(), "camera: is missing: the name of a [[camera]]");
+  }
+  command.for_s = body.number_or_null("for_s", kUsualHold_s, kMinHold_s, wire::kMaxHandHold_s);
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return command;
+}
+
 constexpr std::array kActions = {
     ActionName{"pause", wire::PlayerAction::kPause}, ActionName{"resume", wire::PlayerAction::kResume},
     ActionName{"step", wire::PlayerAction::kStep}, ActionName{"seek", wire::PlayerAction::kSeek},
@@ -182,6 +206,30 @@ Result<wire::ParameterCommand, Failure> parameter_command_of(std::string_view js
   body.require(command.edits.size() <= wire::kMaxParameterEdits, "set, reset: too many values at once (maximum 64)");
   if (auto mistake = body.mistake()) return std::move(*mistake);
   return command;
+}
+
+Result<wire::HandCommand, Failure> wind_by_hand_of(std::string_view json) {
+  Body body(json);
+  wire::HandCommand command{.part = wire::HandPart::kWind};
+  command.is_release = body.flag("release", false);
+  // Without these keys there is no wind: -1 stands for that.
+  const double speed_m_s = body.number("speed_m_s", -1.0, 0.0, wire::kMaxHandWind_m_s);
+  const double direction_deg = body.number("direction_deg", -1.0, 0.0, 360.0);
+  command.for_s = body.number("for_s", 60.0, kMinHold_s, wire::kMaxHandWind_s);
+  body.require(command.is_release || speed_m_s >= 0.0, "speed_m_s: is missing");
+  body.require(command.is_release || direction_deg >= 0.0, "direction_deg: is missing: where the wind comes from");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  command.speed_m_s = std::max(0.0, speed_m_s);
+  command.direction_deg = std::max(0.0, direction_deg);
+  return command;
+}
+
+Result<wire::HandCommand, Failure> blackout_of(std::string_view json) {
+  return hold_of(Body(json), wire::HandPart::kBlackout);
+}
+
+Result<wire::HandCommand, Failure> camera_of(std::string_view json) {
+  return hold_of(Body(json), wire::HandPart::kCamera);
 }
 
 Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json) {

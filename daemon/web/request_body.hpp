@@ -52,6 +52,15 @@ Result<SocketWish, Failure> socket_wish_of(std::string_view json);
 /// false
 Result<wire::ParameterCommand, Failure> parameter_command_of(std::string_view json);
 
+/// {"speed_m_s": 8, "direction_deg": 270, "for_s": 60} or {"release": true}
+Result<wire::HandCommand, Failure> wind_by_hand_of(std::string_view json);
+
+/// {"for_s": 3600}, with null until somebody ends it, or {"release": true}
+Result<wire::HandCommand, Failure> blackout_of(std::string_view json);
+
+/// {"camera": name, "for_s": 3600}, with null until somebody ends it, or {"release": true}
+Result<wire::HandCommand, Failure> camera_of(std::string_view json);
+
 /// {}
 Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
 

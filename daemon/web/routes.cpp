@@ -138,6 +138,24 @@ Answer change_parameters(const http::Request& request, const Facts& /*facts*/) {
                       },
                   .takes_long = true};
 }
+// ---- what is set by hand ----
+
+Answer by_hand(const Result<wire::HandCommand, Failure>& command) {
+  if (!command) return problem(400, "Not understood", command.error().message);
+  return Question{.control = {.scene = {}, .hand = *command}, .answer = [](const wire::ControlReply& reply) {
+                    return answer_with(reply, "by_hand", state::by_hand_json(reply.by_hand.value_or(wire::ByHand{})));
+                  }};
+}
+Answer hand(const http::Request& request, const Facts& /*facts*/) {
+  return by_hand(wind_by_hand_of(request.body));
+}
+Answer blackout(const http::Request& request, const Facts& /*facts*/) {
+  return by_hand(blackout_of(request.body));
+}
+Answer camera(const http::Request& request, const Facts& /*facts*/) {
+  return by_hand(camera_of(request.body));
+}
+
 Answer reload(const http::Request& request, const Facts& /*facts*/) {
   auto command = reload_command_of(request.body);
   if (!command) return problem(400, "Not understood", command.error().message);
@@ -251,6 +269,9 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/player", change_player},
     Route{"GET", "/api/v1/parameters", parameters},
     Route{"POST", "/api/v1/parameters", change_parameters},
+    Route{"POST", "/api/v1/hand", hand},
+    Route{"POST", "/api/v1/blackout", blackout},
+    Route{"POST", "/api/v1/camera", camera},
     Route{"POST", "/api/v1/reload", reload},
     Route{"GET", "/api/v1/wind", recent_wind},
     Route{"GET", "/api/v1/history", history},

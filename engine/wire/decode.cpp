@@ -286,6 +286,33 @@ bool read_cameras(const fb::Sensors& from, Sensors& to) {
   return true;
 }
 
+bool read(const fb::Hold* from, std::optional<Hold>& to) {
+  if (from == nullptr) return true;
+  to = Hold{.left_s = from->left_s()};
+  return !to->left_s || is_within(*to->left_s, 0.0, kMaxHandHold_s);
+}
+
+bool read(const fb::ByHand& from, ByHand& to) {
+  if (const fb::HeldWind* const wind = from.wind()) {
+    to.wind = HeldWind{wind->speed_m_s(), wind->direction_deg(), wind->left_s()};
+    if (!is_within(to.wind->speed_m_s, 0.0, kMaxHandWind_m_s) || !is_within(to.wind->direction_deg, 0.0, 360.0) ||
+        !is_within(to.wind->left_s, 0.0, kMaxHandWind_s))
+      return false;
+  }
+  return read(from.blackout(), to.blackout) && read(from.camera(), to.camera);
+}
+
+bool read(const fb::HandCommand& from, HandCommand& to) {
+  if (from.part() > fb::HandPart_MAX) return false;
+  to.part = static_cast<HandPart>(from.part());
+  to.is_release = from.is_release();
+  to.for_s = from.for_s();
+  to.speed_m_s = from.speed_m_s();
+  to.direction_deg = from.direction_deg();
+  return (!to.for_s || is_within(*to.for_s, 0.0, kMaxHandHold_s)) && is_within(to.speed_m_s, 0.0, kMaxHandWind_m_s) &&
+         is_within(to.direction_deg, 0.0, 360.0) && read_text(from.camera(), to.camera);
+}
+
 bool read(const fb::Sensors& from, Sensors& to) {
   const std::size_t count = from.sensors() == nullptr ? 0 : from.sensors()->size();
   if (count > kMaxSensors || !read(from.wind(), to.wind) || !read(from.wind_place(), to.wind)) return false;
@@ -320,7 +347,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
   return is_reach(to.gust_reach_across) && is_reach(to.gust_reach_along) && read_cameras(from, to) &&
          read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder) &&
-         read(from.animation(), to.animation);
+         read(from.animation(), to.animation) && (from.by_hand() == nullptr || read(*from.by_hand(), to.by_hand));
 }
 
 bool read(const fb::Display& from, Display& to) {
@@ -380,6 +407,7 @@ bool read(const fb::Control& from, Control& to) {
   if (from.reload() != nullptr && !read(*from.reload(), to.reload.emplace())) return false;
   if (from.player() != nullptr && !read(*from.player(), to.player.emplace())) return false;
   if (from.parameters() != nullptr && !read_parameters(*from.parameters(), to.parameters.emplace())) return false;
+  if (from.hand() != nullptr && !read(*from.hand(), to.hand.emplace())) return false;
   to.shown = from.shown();
   to.hide_others = from.hide_others();
   to.over_s = static_cast<double>(from.over_s());
@@ -401,6 +429,7 @@ bool read(const fb::ControlReply& from, ControlReply& to) {
   for (std::size_t i = 0; i < players; ++i)
     if (!read(*from.players()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.players.emplace_back())) return false;
   if (from.parameters() != nullptr && !read_parameters(*from.parameters(), to.parameters.emplace())) return false;
+  if (from.by_hand() != nullptr && !read(*from.by_hand(), to.by_hand.emplace())) return false;
   return from.reload() == nullptr || read(*from.reload(), to.reload.emplace());
 }
 

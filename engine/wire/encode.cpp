@@ -243,6 +243,33 @@ flatbuffers::Offset<fb::Feed> add_feed(Builder& builder, const FeedStatus& feed)
   return table.Finish();
 }
 
+flatbuffers::Offset<fb::Hold> add_hold(Builder& builder, const std::optional<Hold>& hold) {
+  if (!hold) return {};
+  fb::HoldBuilder table(builder);
+  if (hold->left_s) table.add_left_s(*hold->left_s);
+  return table.Finish();
+}
+
+flatbuffers::Offset<fb::ByHand> add_by_hand(Builder& builder, const ByHand& by_hand) {
+  const auto wind = by_hand.wind ? fb::CreateHeldWind(builder, by_hand.wind->speed_m_s, by_hand.wind->direction_deg,
+                                                      by_hand.wind->left_s)
+                                 : flatbuffers::Offset<fb::HeldWind>();
+  const auto blackout = add_hold(builder, by_hand.blackout);
+  return fb::CreateByHand(builder, wind, blackout, add_hold(builder, by_hand.camera));
+}
+
+flatbuffers::Offset<fb::HandCommand> add_hand(Builder& builder, const HandCommand& hand) {
+  const auto camera = add_text(builder, hand.camera);
+  fb::HandCommandBuilder table(builder);
+  table.add_part(static_cast<fb::HandPart>(hand.part));
+  table.add_is_release(hand.is_release);
+  if (hand.for_s) table.add_for_s(*hand.for_s);
+  table.add_speed_m_s(hand.speed_m_s);
+  table.add_direction_deg(hand.direction_deg);
+  table.add_camera(camera);
+  return table.Finish();
+}
+
 flatbuffers::Offset<fb::Camera> add_camera(Builder& builder, const look::Camera& camera) {
   const auto name = add_text(builder, camera.name);
   const auto scene = add_text(builder, camera.scene);
@@ -423,6 +450,8 @@ Bytes encode(const Sensors& sensors) {
   for (std::size_t i = 0; i < std::min(sensors.feeds.size(), kMaxFeeds); ++i)
     feeds.push_back(add_feed(builder, sensors.feeds[i]));
   const auto feed_list = builder.CreateVector(feeds);
+  const auto by_hand =
+      sensors.by_hand == ByHand{} ? flatbuffers::Offset<fb::ByHand>() : add_by_hand(builder, sensors.by_hand);
   fb::SensorsBuilder table(builder);
   table.add_sensors(vector);
   table.add_wind(&wind);
@@ -448,6 +477,7 @@ Bytes encode(const Sensors& sensors) {
   table.add_given_up(sensors.given_up);
   if (sensors.gust_reach_across) table.add_gust_reach_across(*sensors.gust_reach_across);
   if (sensors.gust_reach_along) table.add_gust_reach_along(*sensors.gust_reach_along);
+  if (!by_hand.IsNull()) table.add_by_hand(by_hand);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 
@@ -464,9 +494,10 @@ Bytes encode(const Control& control) {
                                      : flatbuffers::Offset<fb::ReloadCommand>();
   const auto parameters =
       control.parameters ? add_parameters(builder, *control.parameters) : flatbuffers::Offset<fb::ParameterCommand>();
+  const auto hand = control.hand ? add_hand(builder, *control.hand) : flatbuffers::Offset<fb::HandCommand>();
   return finish(builder, fb::Body_Control,
                 fb::CreateControl(builder, scene, control.shown, control.hide_others,
-                                  static_cast<float>(control.over_s), player, reload, parameters));
+                                  static_cast<float>(control.over_s), player, reload, parameters, hand));
 }
 
 Bytes encode(const ControlReply& reply) {
@@ -486,8 +517,10 @@ Bytes encode(const ControlReply& reply) {
       reply.reload ? add_reload_report(builder, *reply.reload) : flatbuffers::Offset<fb::ReloadReport>();
   const auto parameters =
       reply.parameters ? add_parameters(builder, *reply.parameters) : flatbuffers::Offset<fb::ParameterReport>();
-  return finish(builder, fb::Body_ControlReply,
-                fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector, reload, parameters));
+  const auto by_hand = reply.by_hand ? add_by_hand(builder, *reply.by_hand) : flatbuffers::Offset<fb::ByHand>();
+  return finish(
+      builder, fb::Body_ControlReply,
+      fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector, reload, parameters, by_hand));
 }
 
 Bytes encode(const RawTrace& trace) {

@@ -58,6 +58,9 @@ inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a Rel
 inline constexpr std::uint32_t kMaxSteps = 1'000'000;
 inline constexpr double kMinPlayRate = 0.01;
 inline constexpr double kMaxPlayRate = 1000.0;
+inline constexpr double kMaxHandWind_s = 3600.0;   ///< how long a wind can be set by hand
+inline constexpr double kMaxHandHold_s = 86400.0;  ///< blackout and camera, if not until somebody ends it
+inline constexpr double kMaxHandWind_m_s = 60.0;
 inline constexpr std::size_t kMaxRawBytes = 512;  ///< of one message to or from a device; encoders cut longer ones
 
 using Bytes = std::vector<std::uint8_t>;
@@ -229,6 +232,31 @@ struct FeedStatus {
   std::string trouble = {};  ///< why nothing can be sent at present, and what to do; empty: it can
 };
 
+/// Something that a person has set by hand.
+struct Hold {
+  std::optional<double> left_s = std::nullopt;  ///< nullopt: until somebody ends it
+
+  friend bool operator==(const Hold&, const Hold&) = default;
+};
+
+/// The wind that a person has set, which moves the scenes in place of the real one.
+struct HeldWind {
+  double speed_m_s = 0.0;
+  double direction_deg = 0.0;  ///< where it comes from, 0 to 360
+  double left_s = 0.0;
+
+  friend bool operator==(const HeldWind&, const HeldWind&) = default;
+};
+
+/// What people have set by hand at present; nullopt: not set.
+struct ByHand {
+  std::optional<HeldWind> wind = std::nullopt;
+  std::optional<Hold> blackout = std::nullopt;  ///< Shaping::openness is 0, as when closed
+  std::optional<Hold> camera = std::nullopt;    ///< Sensors::camera is the chosen one
+
+  friend bool operator==(const ByHand&, const ByHand&) = default;
+};
+
 struct Sensors {
   std::vector<SensorStatus> sensors;
   wind::State wind;              ///< the real one; that of the frames is shaped
@@ -243,7 +271,7 @@ struct Sensors {
   std::optional<RecorderStatus> recorder = std::nullopt;  ///< nullopt: nothing is recorded, or unknown
   look::Look look = {};                                   ///< within_limits(), whatever was sent
   std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMaxCameras
-  std::size_t camera = 0;                 ///< index of the camera that is on by the time of day; 0 if there are none
+  std::size_t camera = 0;                 ///< index of the camera that is on, by the time of day or by hand; or 0
   std::uint64_t parameters_revision = 0;  ///< changes whenever a ParameterReport would change
   std::optional<AnimationStatus> animation = std::nullopt;  ///< nullopt: unknown, or no scenes
   std::uint64_t recent_ticks = 0;          ///< in the last 10 minutes, including skipped ones; 0: unknown
@@ -253,6 +281,7 @@ struct Sensors {
   /// Reach of gusts across the wind, and along it, relative to the usual; nullopt: unknown.
   std::optional<double> gust_reach_across = std::nullopt, gust_reach_along = std::nullopt;
   std::vector<FeedStatus> feeds = {};  ///< at most kMaxFeeds
+  ByHand by_hand = {};
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };
@@ -271,8 +300,21 @@ struct ReloadCommand {
   std::string file = {};  ///< absolute path of the one that is meant; empty: whichever the server reads
 };
 
+/// What is set by hand. An unknown part is refused.
+enum class HandPart : std::uint8_t { kReport, kWind, kBlackout, kCamera };
+
+/// Sets something by hand for a time, or ends that. Its numbers are finite and within the limits above.
+struct HandCommand {
+  HandPart part = HandPart::kReport;
+  bool is_release = false;                     ///< ends it; what follows has no meaning
+  std::optional<double> for_s = std::nullopt;  ///< nullopt: until somebody ends it; not for the wind
+  double speed_m_s = 0.0;                      ///< kWind: 0 to kMaxHandWind_m_s
+  double direction_deg = 0.0;                  ///< kWind: where it comes from, 0 to 360
+  std::string camera = {};                     ///< kCamera: its name
+};
+
 /// A request to show or hide scenes; or, with `player`, to change how recordings are played; or, with `reload`, to read
-/// the configuration again; or, with `parameters`, to list and set values.
+/// the configuration again; or, with `parameters`, to list and set values; or, with `hand`, to set something by hand.
 struct Control {
   std::string scene;  ///< its name; empty: change nothing, only report the status
   bool shown = true;
@@ -281,6 +323,7 @@ struct Control {
   std::optional<PlayerCommand> player = std::nullopt;
   std::optional<ReloadCommand> reload = std::nullopt;
   std::optional<ParameterCommand> parameters = std::nullopt;
+  std::optional<HandCommand> hand = std::nullopt;
 };
 
 struct SceneState {
@@ -325,6 +368,7 @@ struct ControlReply {
   std::vector<PlayerState> players = {};
   std::optional<ReloadReport> reload = std::nullopt;
   std::optional<ParameterReport> parameters = std::nullopt;
+  std::optional<ByHand> by_hand = std::nullopt;  ///< nullopt: not asked, or an older server
 };
 
 /// One message to or from a sensor's device, as transmitted.

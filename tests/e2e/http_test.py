@@ -79,6 +79,24 @@ class Http(unittest.TestCase):
         self.assertEqual(code, 409)
         self.assertIn("sea", json.loads(text)["detail"])
 
+    def test_wind_and_blackout_are_set_by_hand_for_a_time(self):
+        self.start_daemon('[[sensor]]\nname = "roof"\ndriver = "synthetic"\n')
+        code, text = self.ask("/api/v1/hand", {"speed_m_s": 8, "direction_deg": 270, "for_s": 3600})
+        self.assertEqual((code, json.loads(text)["by_hand"]["wind"]["speed_m_s"]), (200, 8))
+        code, text = self.ask("/api/v1/blackout", {"for_s": None})
+        self.assertEqual((code, json.loads(text)["by_hand"]["blackout"]), (200, {"left_s": None}))
+        self.wait_for("/metrics", 200, r'yuragi_by_hand{part="wind"} 1\n')
+        self.wait_for("/healthz", 503, "dark by hand until somebody ends it")
+        for path, body in (("hand", {"speed_m_s": 8}), ("hand", {"speed_m_s": 1e300, "direction_deg": 0}), ("blackout", {"for_s": -1})):
+            self.assertEqual(self.ask("/api/v1/" + path, body)[0], 400, body)
+        code, text = self.ask("/api/v1/camera", {"camera": "gate"})
+        self.assertEqual((code, json.loads(text)["detail"]), (409, "the configuration has no [[camera]]"))
+        for path in ("hand", "blackout"):
+            code, text = self.ask("/api/v1/" + path, {"release": True})
+            self.assertEqual(code, 200)
+        self.assertEqual(json.loads(text)["by_hand"], {"wind": None, "blackout": None, "camera": None})
+        self.assertNotIn("dark", str(json.loads(self.ask("/api/v1/status")[1])["attention"]))
+
     def test_the_dashboard_shows_metrics_and_labels_that_there_are(self):
         folder = self.enterContext(tempfile.TemporaryDirectory())
         self.start_daemon(f'[recording]\nfile = "{folder}/wall.windlog"\n[[sensor]]\nname = "roof"\ndriver = "synthetic"\n')

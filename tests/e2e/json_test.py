@@ -57,6 +57,8 @@ WITHOUT_A_TABLE = {
     "calibrate microphone": "a dialog",
     "feeds rest": "says what it did",
     "support-bundle": "writes a file, and says so",
+    **{f"hand {what}": "says what it did" for what in ("wind", "blackout", "camera")},
+    **{f"hand release {what}": "says what it did" for what in ("wind", "blackout", "camera")},
     "scene show": "says what it did", "scene hide": "says what it did", "scene switch": "says what it did",
     **{f"{of} {what}": "says what it did" for of in ("scene", "look") for what in ("set", "reset")},
 }

@@ -28,6 +28,12 @@ name = "lawn"
 kind = "grass"
 blades_across = 20
 blades_deep = 20
+[[camera]]
+name = "gate"
+scene = "meadow"
+[[camera]]
+name = "pond"
+scene = "lawn"
 `;
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-page-"));
 const running = new Set();
@@ -87,6 +93,10 @@ async function assertAccessible(page, what) {
     return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
   }, axe);
   assert.deepEqual(faults, [], what);
+}
+/** Waits until the daemon is so. */
+async function waitFor(holds) {
+  for (const hangs = Date.now() + HANG_MS; !(await holds()); ) assert.ok(Date.now() < hangs, String(holds));
 }
 const screenshot = (page, name) => page.screenshot({ path: path.join(screenshots, name + ".png"), fullPage: true });
 
@@ -317,7 +327,7 @@ const LANGUAGES = [
 ];
 /** Texts of ours that do not change while the page is open. */
 const ownTexts = (page) => page.evaluate(() => [
-  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #support h3, #support button, #support .empty, #support label, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
+  ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #look > .line label, #support h3, #support button, #support .empty, #support label, #hand label, #hand option, #hand button, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
   ...[...document.querySelectorAll("[data-label], .trace")].map((one) => one.ariaLabel),
 ]);
 const isWider = (page, width) => page.evaluate((width) => document.documentElement.scrollWidth > width, width);
@@ -389,6 +399,51 @@ test("a select, a field and a switch set values; those of others appear; one tha
   assert.ok((await set({ reset: ["haze"] })).ok);
   await page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("0.15")`);
   assert.ok(page.complaints.every((complaint) => complaint.includes("409")), page.complaints.join()); // the browser reports the refusal
+  await page.context().close();
+});
+
+test("a wind by hand is in the sentence with its time until it is stopped, and so is a blackout", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await waitForSentence(page, LIVE);
+  const speed = page.getByRole("slider", { name: "Wind speed" });
+  await speed.focus();
+  await page.keyboard.press("ArrowRight");
+  assert.equal(await speed.getAttribute("aria-valuetext"), "8.5 m/s");
+  assert.ok(await page.getByRole("button", { name: "Stop" }).isDisabled());
+  await page.selectOption("#hand-time", "3600");
+  await page.getByRole("button", { name: "Start this wind" }).click();
+  await waitForSentence(page, /^The wind is set by hand, \d+ (min|h) left: 8\.5 m\/s from the west$/);
+  assert.equal(await page.getAttribute("#verdict", "data-light"), "other");
+  await page.selectOption("#dark-time", { label: "until somebody ends it" });
+  await page.getByRole("button", { name: "Blackout" }).click();
+  await waitForSentence(page, /^The walls are dark by hand, until somebody ends it\. The wind is set by hand, /);
+  await page.waitForSelector("#attention li");
+  await assertAccessible(page, "by hand");
+  await screenshot(page, "hand-1920-light");
+  await page.getByRole("button", { name: "Stop" }).click();
+  await waitForSentence(page, /^The walls are dark by hand, until somebody ends it$/);
+  await page.getByRole("button", { name: "Lights on" }).click();
+  await waitForSentence(page, LIVE);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a camera is chosen for all viewers, and that of the time of day again", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await openLook(page);
+  const cameraIs = async (name, byHand) => {
+    const { camera, by_hand } = await (await fetch(url + "api/v1/status")).json();
+    return camera === name && (by_hand.camera !== null) === byHand;
+  };
+  const choose = async (label) => (await Promise.all([isSent(page), page.getByLabel("Camera").selectOption({ label })]))[0].status();
+  assert.ok(await cameraIs("gate", false));
+  assert.equal(await choose("pond"), 200);
+  await waitFor(() => cameraIs("pond", true));
+  await page.waitForFunction(() => document.getElementById("camera").value === "pond");
+  assert.equal(await choose("by the time of day"), 200);
+  await waitFor(() => cameraIs("gate", false));
+  await page.waitForFunction(() => document.getElementById("camera").value === "");
+  assert.deepEqual(page.complaints, []);
   await page.context().close();
 });
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Values of [look] and of scenes that are set while the daemon runs: by `yuragi look` and `yuragi scene`, under a client that sees
-every frame.
+"""What is set while the daemon runs: values of [look] and of scenes, by `yuragi look` and `yuragi scene`, and by `yuragi hand` wind,
+blackout and camera, under a client that sees every frame.
 
 usage: parameters_test.py FOLDER_OF_PROGRAMS FOLDER_OF_SCHEMA_MODULES SCENE_BOUNDS
 """
+import csv
 import json
 import subprocess
 import unittest
@@ -16,7 +17,7 @@ FLAG = '[[scene]]\nkind = "flag"\nname = "elm"\nx = 3\n'
 LOOK = "[look]\nhaze = 0.2\n"
 
 
-class Parameters(reload_test.RunningDaemon):
+class Commands(reload_test.RunningDaemon):
     def run_command(self, *arguments):
         return subprocess.run([YURAGI, *map(str, arguments), "--connect", self.address], capture_output=True, text=True,
                               timeout=HANG_S, check=False)
@@ -31,6 +32,8 @@ class Parameters(reload_test.RunningDaemon):
         self.assertEqual((result.returncode, result.stdout), (code, ""), arguments)
         return result.stderr
 
+
+class Parameters(Commands):
     def look_haze_after(self, *arguments):
         """What a viewer, connected beforehand, is told of the haze once the command has been carried out."""
         source = pose_client.SocketBytes(self.address, HANG_S)
@@ -116,6 +119,80 @@ class Parameters(reload_test.RunningDaemon):
         self.assertIn('[stream] control = "nobody"', self.refused(77, "look", "set", "haze=0.4"))
         self.assertIn('[stream] control = "nobody"', self.refused(77, "scene", "set", "grass", "shown=false"))
         self.assertIn("haze                 0.2\n", self.done("look", "values"), "anybody may see them")
+
+
+class ByHand(Commands):
+    STEADY = '[wind]\ndefault_turbulence = 0\n[[sensor]]\ndriver = "synthetic"\nname = "roof"\nspeed = 3\nturbulence = 0\n'
+
+    def status(self):
+        return json.loads(subprocess.run([YURAGI, "status", "--json", "--connect", self.address], capture_output=True, text=True,
+                                         timeout=HANG_S, check=False).stdout)
+
+    def test_a_wind_by_hand_moves_the_scenes_alone_without_a_jump_and_ends_by_itself(self):
+        log = f"{self.folder}/wall.windlog"
+        daemon = self.start_daemon(self.STEADY + GRASS, "--record", log)
+        frames = self.frames()
+        frames.until(lambda seen: abs(seen.wind_m_s - 3.0) < 0.01)
+        self.assertEqual(self.done("hand", "wind", "12", "90", "--for", "1h"), "the wind is 12 m/s from 90 degrees by hand, for 1 h\n")
+        daemon.wait_for(r"client \S+ \(hand\): the wind is 12 m/s")
+        frames.until(lambda seen: abs(seen.wind_m_s - 12.0) < 0.01)
+        status = self.status()
+        self.assertAlmostEqual(status["wind"]["speed_m_s"], 3.0, 2, "the real one")
+        self.assertEqual([status["by_hand"]["wind"][key] for key in ("speed_m_s", "direction_deg")], [12, 90])
+        self.assertIn("by hand: 12 m/s from 90 degrees, ", status["shaping"]["text"])
+        self.assertNotIn("hand", str(status["attention"]))
+        self.done("hand", "wind", "9", "270", "--for", "8")
+        daemon.wait_for("by hand: the scenes have the real wind again")
+        frames.until(lambda seen: abs(seen.wind_m_s - 3.0) < 0.01)
+        self.assertIsNone(self.status()["by_hand"]["wind"])
+        self.assertLessEqual(frames.largest_step_m, PARTS_OF_THE_BOUND * self.bound_m())
+        self.assertEqual(daemon.end(), 0)
+        subprocess.run([YURAGI, "export", log, "-o", f"{self.folder}/wall.csv"], capture_output=True, timeout=HANG_S, check=True)
+        with open(f"{self.folder}/wall.csv", encoding="ascii") as table:
+            speeds = {float(row["speed_m_s"]) for row in csv.DictReader(table)}
+        self.assertEqual(speeds, {3.0}, "as without it")
+
+    def test_winds_that_replace_each_other_among_gusts_make_no_joint_jump(self):
+        self.start_daemon(SENSOR + GRASS)
+        frames = self.frames()
+        for speed, direction in ((20, 0), (0, 90), (25, 180), (12, 300)):
+            self.done("hand", "wind", speed, direction)
+            frames.more(100)
+        self.done("hand", "release", "wind")
+        frames.more(200)
+        self.assertGreater(frames.largest_step_m, 0.0)
+        self.assertLessEqual(frames.largest_step_m, PARTS_OF_THE_BOUND * self.bound_m())
+        print(f"largest step of a joint {1e3 * frames.largest_step_m:.2f} mm, allowed {1e3 * self.bound_m():.2f} mm")
+
+    def test_blackout_and_camera_are_set_and_released(self):
+        camera = '[[camera]]\nname = "{}"\nscene = "grass"\n'
+        self.start_daemon(self.STEADY + GRASS + camera.format("gate") + camera.format("pond"))
+        first = self.status()
+        self.assertEqual((first["cameras"], first["camera"]), (["gate", "pond"], "gate"))
+        self.done("hand", "camera", "pond")
+        self.assertEqual(self.status()["camera"], "pond")
+        self.done("hand", "release", "camera")
+        self.assertEqual(self.status()["camera"], "gate")
+        self.assertIn('there is no camera "sea"; there are: gate, pond', self.refused(64, "hand", "camera", "sea"))
+
+        self.done("hand", "blackout", "--for", "1h")
+        self.assertNotIn("dark", str(self.status()["attention"]))
+        self.done("hand", "blackout", "--until-released")
+        self.assertIn("dark by hand until somebody ends it", str(self.status()["attention"]))
+        source = pose_client.SocketBytes(self.address, HANG_S)
+        self.addCleanup(source.socket.close)
+        source.send(pose_client.subscribe_message(False, True, "parameters_test.py"))
+        openness = (table.Shaping().Openness() for kind, table in map(pose_client.body_of, (message for message, _ in pose_client.messages(source)))
+                    if kind == "Sensors")
+        self.assertGreaterEqual(next(value for value in openness if value < 0.001), 0)
+        self.assertEqual(self.done("hand", "release", "blackout"), "the walls are lit again, as the opening hours are\n")
+        self.assertLessEqual(next(value for value in openness if value > 0.999), 1)
+
+    def test_what_is_no_wind_or_not_allowed_is_refused(self):
+        self.start_daemon('[stream]\ncontrol = "nobody"\n' + self.STEADY + GRASS)
+        self.assertIn('[stream] control = "nobody"', self.refused(77, "hand", "wind", "8", "270"))
+        for words in (("nan", "0"), ("1e300", "0"), ("-1", "0"), ("61", "0"), ("8", "361"), ("8", "270", "--for", "2h"), ("8", "270", "--for", "0")):
+            self.refused(64, "hand", "wind", *words)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto command = web::parameter_command_of(text)) {
     if (command->edits.empty() || command->edits.size() > wire::kMaxParameterEdits) std::abort();
   }
+  for (const auto& command : {web::wind_by_hand_of(text), web::blackout_of(text), web::camera_of(text)}) {
+    if (!command) continue;
+    if (command->for_s && !(*command->for_s >= 1.0 && *command->for_s <= wire::kMaxHandHold_s)) std::abort();
+    if (!(command->speed_m_s >= 0.0 && command->speed_m_s <= wire::kMaxHandWind_m_s)) std::abort();
+    if (!(command->direction_deg >= 0.0 && command->direction_deg <= 360.0)) std::abort();
+    if (command->part == wire::HandPart::kCamera && !command->is_release && command->camera.empty()) std::abort();
+  }
   if (const auto wish = web::socket_wish_of(text)) {
     if (!(wish->wind_hz >= 0.0 && wish->wind_hz <= web::SocketWish::kMaxWindRate_hz)) std::abort();
     if (wish->stream && (wish->stream->thinning.every < 1 || wish->stream->thinning.every > wire::kMaxEvery))

@@ -1,7 +1,9 @@
 // The page: the daemon's state goes into the views; a clock keeps ages correct between two states.
 import { ArchiveView } from "./archive_view";
+import { CameraView } from "./camera_view";
 import { Change } from "./change";
 import { by_id, element, set_text } from "./element";
+import { HandView } from "./hand_view";
 import { HealthView } from "./health_view";
 import { HistoryView } from "./history_view";
 import { listen } from "./link";
@@ -35,6 +37,8 @@ const history = new HistoryView(by_id("history"));
 const log = new LogView(by_id("log") as HTMLDetailsElement, by_id("log-note"), by_id("log-lines"));
 const archive = new ArchiveView(by_id("archive") as HTMLDetailsElement, by_id("archive-note"), by_id("archive-list"), change);
 const support = new SupportView(by_id("support") as HTMLDetailsElement, change);
+const hand = new HandView(by_id("hand"), change);
+const camera = new CameraView(by_id("look"), change);
 const look = new LookView(by_id("look") as HTMLDetailsElement, change);
 const health = new HealthView(by_id("health"));
 
@@ -73,6 +77,8 @@ function forget(what: Knowledge): void {
     players.clear();
     health.clear();
     look.clear();
+    hand.clear();
+    camera.clear();
     show_attention([]);
   }
   knowledge = what;
@@ -88,6 +94,7 @@ function redraw(): void {
   if (since_s() > NEWS_ARE_OLD_AFTER_S) return lost();
   knowledge.age_s = since_s();
   sensors.show(knowledge.status, knowledge.age_s);
+  hand.show(knowledge.status.by_hand, knowledge.status.age_s + knowledge.age_s);
   show_verdict();
 }
 
@@ -124,6 +131,7 @@ void listen({
     by_id("cards").hidden = false;
     wind.show(status);
     health.show(status);
+    camera.show(status);
     history.show(status.recorder !== null);
     show_attention(status.attention);
     set_text(by_id("host"), location.host);

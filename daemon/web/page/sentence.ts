@@ -1,7 +1,7 @@
 // The one sentence and the one light on top. Pure: what is known and the time in, text in the reader's language out.
-import { leading_sensor, Sensor, Status } from "./status";
+import { leading_sensor, left_of, Sensor, Status } from "./status";
 import { texts } from "./texts";
-import { clock_text, duration_text, wind_text, word_of } from "./wording";
+import { clock_text, duration_text, left_text, wind_text, word_of } from "./wording";
 
 /** What the page knows of the daemon. */
 export type Knowledge =
@@ -47,6 +47,17 @@ function verdict_without_sensor(status: Status): Verdict {
   return { light: "other", text, announcement: text };
 }
 
+/** undefined: the walls show the real wind. */
+function verdict_of_hand({ by_hand: { wind, blackout }, age_s }: Status, since_s: number): Verdict | undefined {
+  if (wind === null && blackout === null) return undefined;
+  const parts = [
+    ...(blackout ? [[texts.dark_by_hand, left_text(left_of(blackout, age_s + since_s))].join(texts.between)] : []),
+    ...(wind ? [texts.is_what([texts.wind_by_hand, left_text(left_of(wind, age_s + since_s))].join(texts.between), wind_text(wind.speed_m_s, wind.direction_deg))] : []),
+  ];
+  const announcement = [...(blackout ? [texts.dark_by_hand] : []), ...(wind ? [texts.wind_by_hand] : [])].join(texts.between_sentences);
+  return { light: "other", text: parts.join(texts.between_sentences), announcement };
+}
+
 export function verdict_of(knowledge: Knowledge): Verdict {
   switch (knowledge.kind) {
     case "connecting":
@@ -60,6 +71,8 @@ export function verdict_of(knowledge: Knowledge): Verdict {
       return { light: "lost", text, announcement: knowledge.needs_pairing ? text : texts.no_news };
     }
     case "news": {
+      const by_hand = verdict_of_hand(knowledge.status, knowledge.age_s);
+      if (by_hand) return by_hand;
       const sensor = leading_sensor(knowledge.status);
       return sensor
         ? verdict_of_sensor(sensor, knowledge.status, knowledge.age_s)

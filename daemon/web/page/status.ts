@@ -72,6 +72,21 @@ export interface Feed {
   trouble: string;
 }
 
+/** Set by hand; null: until somebody ends it. */
+export interface Hold {
+  left_s: number | null;
+}
+
+/** What is set by hand now; null: not set. */
+export interface ByHand {
+  wind: (Hold & { speed_m_s: number; direction_deg: number }) | null;
+  blackout: Hold | null;
+  camera: Hold | null;
+}
+
+/** How long it still lasts. */
+export const left_of = ({ left_s }: Hold, since_s: number) => (left_s === null ? null : Math.max(0, left_s - since_s));
+
 export interface Status {
   verdict: "well" | "attention";
   attention: string[];
@@ -81,6 +96,9 @@ export interface Status {
   tick_rate_hz: number;
   wind: Wind;
   sensors: Sensor[];
+  by_hand: ByHand;
+  cameras: string[];
+  camera: string | null;
   recorder: Recorder | null;
   clients: { connected: number; refused: number; stuck: number; idle: number };
   gust_reach: GustReach;

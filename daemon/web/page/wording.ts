@@ -34,6 +34,12 @@ export function duration_text(duration_s: number): string {
   return texts.hours(number_text(duration_s / 3600, 0));
 }
 
+/** "42 s left", "until somebody ends it" */
+export function left_text(left_s: number | null): string {
+  if (left_s === null) return texts.until_ended;
+  return texts.left(left_s < 119.5 ? texts.seconds(number_text(Math.ceil(left_s), 0)) : duration_text(left_s));
+}
+
 /** A place in a recording: "1:02:03" */
 export function place_text(place_s: number): string {
   const whole = Math.floor(Math.max(0, place_s));

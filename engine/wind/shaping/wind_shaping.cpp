@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "engine/math/portable.hpp"
@@ -36,7 +37,16 @@ void follow_to_the_end(math::CriticallyDamped& value, double target, double over
   if (std::abs(value.value - target) < kArrived && std::abs(value.rate_per_s) < kArrived) value = {target, 0.0};
 }
 
-/// The breeze has carried the tapes farther, too.
+/// The same angle within half a turn of 0.
+double within_half_a_turn(double angle, double full_turn) noexcept {
+  return std::remainder(angle, full_turn);
+}
+
+double part_of(const math::CriticallyDamped& value) noexcept {
+  return std::clamp(value.value, 0.0, 1.0);
+}
+
+/// The breeze, or the wind by hand, has carried the tapes farther, too.
 void carry_tapes(ground::WindStroke& stroke, Vector blown_m, double way_m) noexcept {
   stroke.way_m += way_m;
   stroke.carried_east_m += blown_m.u_m_s;
@@ -114,7 +124,7 @@ void WindShaping::change_strengths(double dt_s) noexcept {
   ceiling_ = {.from_m_s = 1.0 / now_.per_ceiling_from_s_m, .most_m_s = 1.0 / now_.per_ceiling_most_s_m};
 }
 
-void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
+void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site, const ByHand& by_hand) noexcept {
   State& state = wind.state;
   const double dt_s = has_begun_ ? std::max(0.0, seconds(state.time - time_)) : 0.0;
   if (!has_begun_ || state.time > time_) time_ = state.time;
@@ -129,10 +139,12 @@ void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site
   // By then the mean has forgotten the previous wind.
   if (live_s_ > settings_.over_s) remember(mean_.value, dt_s);
   follow(state.live_weight, is_open, way_s);
+  follow_hand(by_hand, dt_s, way_s);
 
-  // Factors, the breeze, and last the ceiling.
+  // Factors, the breeze, the hand, and last the ceiling.
   apply_gains(wind);
   add_breeze(wind, dt_s);
+  apply_hand(wind, dt_s);
   hold_back(wind);
 }
 
@@ -219,6 +231,69 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
   follow_to_the_end(openness_, is_open ? 1.0 : 0.0, settings_.fade_s, dt_s);
 }
 
+/// Advances what is set by hand. A wind that begins is there at once, in no strength; one that replaces another turns
+/// the shorter way. `way_s`: dt_s, but for the first call.
+void WindShaping::follow_hand(const ByHand& by_hand, double dt_s, double way_s) noexcept {
+  constexpr double kFullTurn_deg = 360.0;
+  if (by_hand.wind) {
+    if (hand_.value <= 0.0) {
+      hand_m_s_ = {by_hand.wind->speed_m_s, 0.0};
+      hand_from_deg_ = {by_hand.wind->direction_deg, 0.0};
+      hand_turn_rad_ = 0.0;
+    }
+    const double turn_deg = within_half_a_turn(by_hand.wind->direction_deg - hand_from_deg_.value, kFullTurn_deg);
+    hand_m_s_.step(by_hand.wind->speed_m_s, kPhaseOfArrival / kHandOver_s, dt_s);
+    hand_from_deg_.step(hand_from_deg_.value + turn_deg, kPhaseOfArrival / kHandOver_s, dt_s);
+  }
+  follow_to_the_end(hand_, by_hand.wind ? 1.0 : 0.0, kHandOver_s, way_s);
+  follow_to_the_end(dark_, by_hand.is_dark ? 1.0 : 0.0, kDarkOver_s, way_s);
+}
+
+/// Puts the wind by hand in the place of the others, as far as it is in effect: a mean that is the same everywhere, and
+/// its own gusts, which it carries.
+void WindShaping::apply_hand(ground::DrivingWind& wind, double dt_s) noexcept {
+  const double part = part_of(hand_);
+  if (part <= 0.0 && hand_way_m_ == 0.0) return;
+  ground::Wind& ground = wind.ground;
+  turbulence::GustNoise::Moment& gusts = ground.gusts;
+  const double speed_m_s = std::max(0.0, hand_m_s_.value);
+  const Vector ahead = wind_from(1.0, hand_from_deg_.value);
+
+  hand_blown_m_ = hand_blown_m_ + (part * dt_s) * (speed_m_s * ahead - ground.advection);
+  hand_way_m_ += part * dt_s * speed_m_s;
+  noise_->carry(gusts.carried, hand_blown_m_.u_m_s, -hand_blown_m_.v_m_s, 1.0);
+  carry_tapes(wind.stroke, hand_blown_m_, hand_way_m_);
+  if (part <= 0.0) return;
+
+  // The angle from the real direction to its own, counterclockwise; followed over any number of turns.
+  const double cross = gusts.ahead.u_m_s * ahead.v_m_s - gusts.ahead.v_m_s * ahead.u_m_s;
+  const double turn_rad = std::atan2(cross, dot(gusts.ahead, ahead));
+  hand_turn_rad_ += within_half_a_turn(turn_rad - hand_turn_rad_, 2.0 * std::numbers::pi);
+  const double cosine = std::cos(part * hand_turn_rad_);
+  const double sine = std::sin(part * hand_turn_rad_);
+
+  ground = (1.0 - part) * ground;
+  ground.advection = (1.0 - part) * ground.advection + (part * speed_m_s) * ahead;
+  const turbulence::GustNoise::Moment real = gusts;
+  turbulence::GustNoise::Moment own = gusts;
+  own.ahead = ahead;
+  for (std::size_t i = 0; i < turbulence::GustNoise::kOctaves; ++i) {
+    const double along_m_s = part * speed_m_s * std::sqrt(along_[i]);
+    const double across_m_s = part * speed_m_s * std::sqrt(across_[i]);
+    own.along_m_s[i] = static_cast<float>(along_m_s);
+    own.across_m_s[i] = static_cast<float>(across_m_s);
+    gusts.along_m_s[i] = static_cast<float>(math::length(static_cast<double>(gusts.along_m_s[i]), along_m_s));
+    gusts.across_m_s[i] = static_cast<float>(math::length(static_cast<double>(gusts.across_m_s[i]), across_m_s));
+  }
+  gusts.ahead = {cosine * real.ahead.u_m_s - sine * real.ahead.v_m_s,
+                 sine * real.ahead.u_m_s + cosine * real.ahead.v_m_s};
+  know_less(wind.stroke, real, gusts);
+  const Vector held = (part * speed_m_s) * ahead + noise_->everywhere(own);
+  ground.breeze = ground.breeze + held;
+  ground.everywhere = ground.everywhere + held;
+  wind.state.wind = wind_where_measured(ground, wind.stroke, *noise_);
+}
+
 /// Adds the floor's breeze: a mean from the last wind direction, and its own gusts, which it carries. Their power is
 /// the difference between a wind of the floor's strength and one without the breeze.
 void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
@@ -259,7 +334,8 @@ WindShapingReport WindShaping::report() const noexcept {
           .breeze_m_s = breeze_.value,
           .gusts = now_.gusts,
           .opening = opening_.value,
-          .openness = openness_.value,
+          .openness = openness_.value * (1.0 - part_of(dark_)),
+          .hand = part_of(hand_),
           .speed_m_s = speed_m_s_,
           .ceiling_gain = ceiling_gain_,
           .median_m_s = median_m_s_,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "engine/math/critically_damped.hpp"
@@ -32,6 +33,18 @@ struct WindShapingSettings {
   double length_m = 57.0;             ///< and its integral length scale
 };
 
+/// A wind that a person has set.
+struct HeldWind {
+  double speed_m_s = 0.0;      ///< its mean
+  double direction_deg = 0.0;  ///< where it comes from
+};
+
+/// What people have set by hand.
+struct ByHand {
+  std::optional<HeldWind> wind = std::nullopt;  ///< moves the scenes in place of the real wind
+  bool is_dark = false;                         ///< openness is 0, whatever the opening hours are; no wind changes
+};
+
 /// The active effects, as of the last shape().
 struct WindShapingReport {
   double mean_m_s = 0.0;         ///< slow mean of the real wind
@@ -41,7 +54,8 @@ struct WindShapingReport {
   double breeze_m_s = 0.0;  ///< what the floor adds
   double gusts = 1.0;       ///< how strong the gusts are, compared with the real ones
   double opening = 1.0;     ///< the factor on the wind: closed_level when closed, 1 when open
-  double openness = 1.0;    ///< 0 when closed, 1 when open, for any closed_level
+  double openness = 1.0;    ///< 0 when closed or dark by hand, 1 when open, for any closed_level
+  double hand = 0.0;        ///< the part of the wind that is set by hand
   double speed_m_s = 0.0;   ///< of the wind at this moment, before the ceiling
   double ceiling_gain = 1.0;
   double median_m_s = 0.0;  ///< the site's own, from its memory
@@ -57,23 +71,28 @@ struct WindShapingReport {
 ///  2. Floor: a mean below it is raised to it by a factor of up to kMaxFloorGain; the rest is a breeze from the last
 ///  wind direction, with the turbulence of the climate at that level. It carries the gusts: those that no sensor
 ///  measured then differ from the real wind's.
-///  3. Opening: outside of opening hours only a part remains. 4. Ceiling: SoftCeiling at the place of measurement. Its
-///  factor is written on the tapes with the wind, so that a limited gust crosses the ground unchanged.
+///  3. Opening: outside of opening hours only a part remains. 4. By hand: while a person has set a wind, it takes the
+///  place of all others, also when closed: its mean is the same everywhere, with the turbulence of the climate at its
+///  speed. 5. Ceiling: SoftCeiling at the place of measurement. Its factor is written on the tapes with the wind, so
+///  that a limited gust crosses the ground unchanged.
 ///
-/// A factor never turns the wind. Site gain, floor and opening are slow, critically damped: they never jump for any
-/// wind, clock or `is_open`. A step that is off does not change the wind, bit for bit. Finite for a finite wind.
+/// A factor never turns the wind. Site gain, floor, opening and hand are slow, critically damped: they never jump for
+/// any wind, clock, `is_open` or hand. A step that is off does not change the wind, bit for bit; after a wind by hand
+/// the noise has been carried farther. Finite for a finite wind.
 /// Thread-safe: no. Realtime-safe: all but construction.
 class WindShaping {
  public:
   static constexpr double kMaxFloorGain = 3.0;
   static constexpr double kChangeOver_s = 5.0;  ///< how long change() takes
+  static constexpr double kHandOver_s = 5.0;    ///< how long the wind takes to one set by hand, and back
+  static constexpr double kDarkOver_s = 2.0;    ///< how long going dark takes, and back
 
   /// `noise`: the one that the estimator and the scenes have.
   WindShaping(const WindShapingSettings& settings, std::shared_ptr<const turbulence::GustNoise> noise);
 
   /// Shapes the wind of wind.state.time. A time that goes back counts as no passed time. The first call starts at the
   /// targets for its wind and `is_open`. `is_of_site`: live wind is the site's, and is remembered.
-  void shape(ground::DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
+  void shape(ground::DrivingWind& wind, bool is_open, bool is_of_site = true, const ByHand& by_hand = {}) noexcept;
 
   /// Changes the settings, over the next seconds (kChangeOver_s): the memory of the site is kept, and nothing jumps.
   /// Turbulence and length of the breeze do not change. Realtime-safe: yes.
@@ -103,6 +122,8 @@ class WindShaping {
   void follow(double live_weight, bool is_open, double dt_s) noexcept;
   void apply_gains(ground::DrivingWind& wind) const noexcept;
   void add_breeze(ground::DrivingWind& wind, double dt_s) noexcept;
+  void follow_hand(const ByHand& by_hand, double dt_s, double way_s) noexcept;
+  void apply_hand(ground::DrivingWind& wind, double dt_s) noexcept;
   void hold_back(ground::DrivingWind& wind) noexcept;
 
   WindShapingSettings settings_;
@@ -117,8 +138,13 @@ class WindShaping {
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   math::CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
   math::CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0}, openness_{1.0};
-  Vector blown_m_;            ///< distance by which the breeze has also carried the gusts
-  double blown_way_m_ = 0.0;  ///< and along how much of a way
+  Vector blown_m_;                                   ///< distance by which the breeze has also carried the gusts
+  double blown_way_m_ = 0.0;                         ///< and along how much of a way
+  math::CriticallyDamped hand_, dark_;               ///< how much of each is in effect, 0 to 1
+  math::CriticallyDamped hand_m_s_, hand_from_deg_;  ///< the wind by hand; any number of full turns
+  double hand_turn_rad_ = 0.0;                       ///< from the real wind's direction to its own, without a jump
+  Vector hand_blown_m_;                              ///< distance by which it has carried the gusts, and along how ...
+  double hand_way_m_ = 0.0;                          ///< ... much of a way
   double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;
   MonoTime time_{};
   bool has_begun_ = false;

@@ -76,6 +76,33 @@ TEST(ParameterBody, MistakesNameTheirKey) {
   EXPECT_THAT(mistake(R"({"reset": [1]})"), HasSubstr("reset: must be a list"));
   EXPECT_EQ(mistake(R"({"set": {"a": 1}})"), "none");
 }
+TEST(HandBody, AllKeysAndDefaults) {
+  const auto wind = wind_by_hand_of(R"({"speed_m_s":8,"direction_deg":270})");
+  ASSERT_TRUE(wind);
+  EXPECT_EQ(wind->part, wire::HandPart::kWind);
+  EXPECT_EQ(wind->speed_m_s, 8.0);
+  EXPECT_EQ(wind->direction_deg, 270.0);
+  EXPECT_EQ(wind->for_s, 60.0);
+  EXPECT_TRUE(wind_by_hand_of(R"({"release":true})")->is_release);
+  EXPECT_EQ(blackout_of("{}")->for_s, 3600.0);
+  EXPECT_EQ(blackout_of(R"({"for_s":null})")->for_s, std::nullopt);
+  EXPECT_EQ(camera_of(R"({"camera":"gate","for_s":90})")->camera, "gate");
+  EXPECT_TRUE(camera_of(R"({"release":true})")->is_release);
+}
+TEST(HandBody, MistakesNameTheirKey) {
+  const auto mistake = [](const auto& command) { return command ? "none" : command.error().message; };
+  EXPECT_THAT(mistake(wind_by_hand_of("{}")), HasSubstr("speed_m_s: is missing"));
+  EXPECT_THAT(mistake(wind_by_hand_of(R"({"speed_m_s":8})")), HasSubstr("direction_deg: is missing"));
+  EXPECT_THAT(mistake(wind_by_hand_of(R"({"speed_m_s":-1,"direction_deg":0})")), HasSubstr("speed_m_s: must be"));
+  EXPECT_THAT(mistake(wind_by_hand_of(R"({"speed_m_s":1e300,"direction_deg":0})")), HasSubstr("speed_m_s: must be"));
+  EXPECT_THAT(mistake(wind_by_hand_of(R"({"speed_m_s":1,"direction_deg":361})")), HasSubstr("direction_deg: must be"));
+  EXPECT_THAT(mistake(wind_by_hand_of(R"({"speed_m_s":1,"direction_deg":0,"for_s":3601})")), HasSubstr("for_s: must"));
+  EXPECT_THAT(mistake(wind_by_hand_of(R"({"speed_m_s":1,"direction_deg":0,"for_s":null})")), HasSubstr("for_s: must"));
+  EXPECT_THAT(mistake(blackout_of(R"({"for_s":0})")), HasSubstr("for_s: must be a number from 1 to 86400"));
+  EXPECT_THAT(mistake(blackout_of(R"({"camera":"gate"})")), HasSubstr("camera: is not known here"));
+  EXPECT_THAT(mistake(blackout_of("[")), HasSubstr("JSON object"));
+  EXPECT_THAT(mistake(camera_of("{}")), HasSubstr("camera: is missing"));
+}
 TEST(SocketBody, AllKeysAndDefaults) {
   const auto all =
       socket_wish_of(R"({"wind":60,"status":2,"places":["door"],"stream":{"scenes":["flag"],"every":8,"rate":30}})");

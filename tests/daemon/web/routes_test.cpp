@@ -134,6 +134,30 @@ TEST_F(RoutesTest, ValuesAndAReload_AreAskedOfTheDaemon) {
                             .body)["applied"][0],
             "[look] clouds: 0 -> 1");
 }
+TEST_F(RoutesTest, WhatIsSetByHand_IsAskedOfTheDaemonAndInStatusAndMetrics) {
+  const Answer answer = answer_to(
+      {.method = "POST", .path = "/api/v1/hand", .body = R"({"speed_m_s":8,"direction_deg":270,"for_s":30})"}, facts_);
+  ASSERT_TRUE(std::holds_alternative<Question>(answer));
+  const auto& question = std::get<Question>(answer);
+  ASSERT_TRUE(question.control.hand);
+  EXPECT_EQ(question.control.hand->for_s, 30.0);
+  const wire::ByHand by_hand{.wind = wire::HeldWind{8.0, 270.0, 30.0}, .blackout = wire::Hold{}};
+  const json done = json::parse(question.answer({.done = true, .message = "", .scenes = {}, .by_hand = by_hand}).body);
+  EXPECT_EQ(done["by_hand"]["wind"]["left_s"], 30.0);
+  EXPECT_EQ(done["by_hand"]["blackout"]["left_s"], nullptr);
+  EXPECT_EQ(done["by_hand"]["camera"], nullptr);
+
+  sensors_.by_hand = by_hand;
+  sensors_.cameras.push_back({.name = "gate"});
+  const json status = json::parse(get("/api/v1/status").body);
+  EXPECT_EQ(status["by_hand"]["wind"]["speed_m_s"], 8.0);
+  EXPECT_EQ(status["cameras"], json::array({"gate"}));
+  EXPECT_EQ(status["camera"], "gate");
+  EXPECT_THAT(status["attention"][0].get<std::string>(), HasSubstr("dark by hand until somebody ends it"));
+  const std::string text = get("/metrics").body;
+  EXPECT_THAT(text, HasSubstr("yuragi_by_hand{part=\"wind\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("yuragi_by_hand{part=\"camera\"} 0\n"));
+}
 TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
   const Answer answer = answer_to({.method = "GET", .path = "/api/v1/player"}, facts_);
   ASSERT_TRUE(std::holds_alternative<Question>(answer));
@@ -228,7 +252,7 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
     return body.dump();
   };
   for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions", "/api/v1/parameters",
-                           "/api/v1/reload"}) {
+                           "/api/v1/reload", "/api/v1/hand", "/api/v1/blackout", "/api/v1/camera"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
     const auto* const refusal = std::get_if<http::Response>(&answer);
     EXPECT_EQ(refusal, nullptr) << refusal->body;

@@ -222,6 +222,18 @@ TEST(HostileBytes, SurfacesOutOfBoundsAreRefused) {
     EXPECT_EQ(kinds_with<pose::SurfaceSkeleton>(4, changes[i]).error(), Error::kInconsistent) << i;
 }
 
+TEST(HostileBytes, CommandsByHandOutOfBoundsAreRefused) {
+  const auto refusal = [](const HandCommand& hand) {
+    return decode(samples::body(encode(Control{.scene = "", .hand = hand}))).error();
+  };
+  for (const double bad : {std::nan(""), 1e300, -1.0, 1e6}) {
+    EXPECT_EQ(refusal({.part = HandPart::kWind, .for_s = bad}), Error::kInconsistent);
+    EXPECT_EQ(refusal({.part = HandPart::kWind, .speed_m_s = bad}), Error::kInconsistent);
+    EXPECT_EQ(refusal({.part = HandPart::kWind, .direction_deg = bad}), Error::kInconsistent);
+  }
+  EXPECT_EQ(refusal({.part = static_cast<HandPart>(4)}), Error::kInconsistent);
+}
+
 TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
   for (const double over_s : {-1.0, kMaxFade_s + 1.0, std::nan("")}) {
     EXPECT_EQ(decode(samples::body(encode(Control{.scene = "elm", .over_s = over_s}))).error(), Error::kInconsistent);
@@ -331,6 +343,11 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
       [](auto& s) { s.shaping.gusts = std::nan(""); },
       [](auto& s) { s.shaping.gusts = -0.5; },
       [](auto& s) { s.shaping.openness = 1.5; },
+      [](auto& s) { s.by_hand.wind = HeldWind{.speed_m_s = std::nan("")}; },
+      [](auto& s) { s.by_hand.wind = HeldWind{.direction_deg = -1.0}; },
+      [](auto& s) { s.by_hand.wind = HeldWind{.left_s = 1e300}; },
+      [](auto& s) { s.by_hand.blackout = Hold{.left_s = -1.0}; },
+      [](auto& s) { s.by_hand.camera = Hold{.left_s = std::nan("")}; },
       [](auto& s) { s.wind.upwind_m = std::nan(""); },
       [](auto& s) { s.wind.upwind_m = -1e7; },
       [](auto& s) { s.wind.to_middle_s = -1.0; },

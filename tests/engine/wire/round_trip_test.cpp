@@ -548,6 +548,28 @@ TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   EXPECT_EQ(shaping.openness, 0.25);
 }
 
+TEST(WireRoundTrip, WhatIsSetByHandComesBackAsItWas) {
+  const Control control = decoded<Control>(encode(samples::hand_control()));
+  ASSERT_TRUE(control.hand);
+  EXPECT_EQ(control.hand->part, HandPart::kCamera);
+  EXPECT_TRUE(control.hand->is_release);
+  EXPECT_EQ(control.hand->for_s, 90.5);
+  EXPECT_EQ(control.hand->speed_m_s, 8.5);
+  EXPECT_EQ(control.hand->direction_deg, 270.0);
+  EXPECT_EQ(control.hand->camera, "gate");
+  EXPECT_FALSE(decoded<Control>(encode(samples::control())).hand);
+  EXPECT_EQ(decoded<Control>(encode(Control{.scene = "", .hand = HandCommand{}})).hand->for_s, std::nullopt);
+
+  Sensors sensors = samples::sensors();
+  EXPECT_EQ(decoded<Sensors>(encode(sensors)).by_hand, ByHand{});
+  sensors.by_hand = samples::by_hand();
+  EXPECT_EQ(decoded<Sensors>(encode(sensors)).by_hand, samples::by_hand());
+  ControlReply reply = samples::control_reply();
+  EXPECT_FALSE(decoded<ControlReply>(encode(reply)).by_hand);
+  reply.by_hand = samples::by_hand();
+  EXPECT_EQ(decoded<ControlReply>(encode(reply)).by_hand, samples::by_hand());
+}
+
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {
   const RawTrace sent = samples::raw_trace();
   const RawTrace trace = decoded<RawTrace>(encode(sent));

@@ -286,6 +286,22 @@ inline wire::ControlReply control_reply() {
                       {}}};
 }
 
+inline wire::Control hand_control() {
+  return {.scene = "",
+          .hand = wire::HandCommand{.part = wire::HandPart::kCamera,
+                                    .is_release = true,
+                                    .for_s = 90.5,
+                                    .speed_m_s = 8.5,
+                                    .direction_deg = 270.0,
+                                    .camera = "gate"}};
+}
+
+inline wire::ByHand by_hand() {
+  return {.wind = wire::HeldWind{.speed_m_s = 8.5, .direction_deg = 270.0, .left_s = 42.5},
+          .blackout = wire::Hold{},
+          .camera = wire::Hold{.left_s = 12.5}};
+}
+
 inline wire::ControlReply reload_reply() {
   return {.done = true,
           .message = "2 changes applied",
@@ -450,13 +466,13 @@ inline wire::RawTrace raw_trace() {
 /// One of each, in the order of wire::Message, scenes and a frame of all kinds, and a wish for players; with their size
 /// prefixes.
 inline std::vector<wire::Bytes> one_of_each() {
-  return {wire::encode(hello()),          wire::encode(subscribe()),
-          wire::encode(scenes()),         frame_bytes(),
-          wire::encode(sensors()),        wire::encode(control()),
-          wire::encode(control_reply()),  wire::encode(raw_trace()),
-          wire::encode(all_kinds()),      frame_of_all_kinds(),
-          wire::encode(player_control()), wire::encode(parameter_control()),
-          wire::encode(parameter_reply())};
+  return {wire::encode(hello()),           wire::encode(subscribe()),
+          wire::encode(scenes()),          frame_bytes(),
+          wire::encode(sensors()),         wire::encode(control()),
+          wire::encode(control_reply()),   wire::encode(raw_trace()),
+          wire::encode(all_kinds()),       frame_of_all_kinds(),
+          wire::encode(player_control()),  wire::encode(parameter_control()),
+          wire::encode(parameter_reply()), wire::encode(hand_control())};
 }
 
 /// What decode() takes: the bytes behind the size prefix.

@@ -16,6 +16,11 @@ export const english = {
   no_sensor_configured: "no sensor is configured",
   no_sensor_live: (sensors: string) => `no sensor is live: ${sensors}`,
   sensor_is: (sensor: string, state: string) => `${sensor} is ${state}`,
+  wind_by_hand: "The wind is set by hand",
+  dark_by_hand: "The walls are dark by hand",
+  left: (duration: string) => `${duration} left`,
+  until_ended: "until somebody ends it",
+  is_what: (what: string, wind: string) => `${what}: ${wind}`,
   titles: { live: "Live", attention: "Live, with faults", other: "Not live", lost: "No connection" },
   attention: "What needs attention",
 
@@ -72,6 +77,23 @@ export const english = {
   fades: { "0": "at once", "2": "in 2 s", "10": "in 10 s", "60": "in a minute" },
   show_all: "Show all",
   hide_all: "Hide all",
+
+  // By hand, and the camera.
+  by_hand: "By hand",
+  hand_speed: "Wind speed",
+  hand_direction: "Wind direction",
+  hand_time: "How long",
+  hand_times: { "30": "for 30 s", "60": "for a minute", "300": "for 5 minutes", "900": "for 15 minutes", "3600": "for an hour" },
+  hand_start: "Start this wind",
+  hand_stop: "Stop",
+  hand_off: "The scenes have the real wind.",
+  dark_time: "Dark",
+  dark_times: { "600": "for 10 minutes", "3600": "for one hour", "28800": "for 8 hours" },
+  dark_start: "Blackout",
+  dark_stop: "Lights on",
+  dark_off: "The walls are lit, unless it is closed.",
+  camera: "Camera",
+  camera_of_time: "by the time of day",
 
   // Look.
   look: "Look",

@@ -38,7 +38,7 @@ class ShapedWind {
   ground::DrivingWind after(double speed_m_s, double dt_s, bool is_open = true, double live_weight = 1.0) {
     time_s += dt_s;
     ground::DrivingWind wind = steady_wind(speed_m_s, time_s, live_weight);
-    shaping.shape(wind, is_open);
+    shaping.shape(wind, is_open, true, by_hand);
     return wind;
   }
   /// The last of many ticks.
@@ -49,6 +49,7 @@ class ShapedWind {
 
   WindShaping shaping;
   double time_s = 100.0;
+  ByHand by_hand;
 };
 
 void expect_same_bits(const ground::DrivingWind& shaped, const ground::DrivingWind& real) {
@@ -229,6 +230,103 @@ TEST(WindShaping, BeginsClosedWhereItIsClosed) {
   ShapedWind wind({.closed_level = 0.25});
   EXPECT_EQ(speed_of(wind.after(8.0, kTick_s, false).state.wind), 2.0);
   EXPECT_EQ(wind.shaping.report().openness, 0.0);
+}
+
+TEST(WindShaping, AWindByHandIsReachedWithinItsTimeAndTheRealOneAfterIt) {
+  ShapedWind wind({.turbulence_intensity = 0.0});
+  wind.after(3.0, kTick_s);
+  wind.by_hand.wind = HeldWind{.speed_m_s = 8.0, .direction_deg = 270.0};
+  const Vector soon = wind.after_long(3.0, WindShaping::kHandOver_s).state.wind;
+  EXPECT_LT(speed_of(soon - wind_from(8.0, 270.0)), 0.06 * speed_of(wind_from(8.0, 270.0) - 3.0 * Vector{0.6, 0.8}));
+  const ground::DrivingWind held = wind.after_long(3.0, 60.0);
+  EXPECT_NEAR(held.state.wind.u_m_s, 8.0, 1e-9);
+  EXPECT_NEAR(held.state.wind.v_m_s, 0.0, 1e-9);
+  EXPECT_NEAR(speed_of(held.ground.at(*shared_gusts(), 30.0, -20.0) - held.state.wind), 0.0, 1e-9) << "everywhere";
+  EXPECT_NEAR(speed_of(held.ground.advection - held.state.wind), 0.0, 1e-9) << "it carries the gusts";
+  EXPECT_EQ(wind.shaping.report().hand, 1.0);
+  wind.by_hand.wind.reset();
+  const ground::DrivingWind real = wind.after_long(3.0, 60.0);
+  EXPECT_EQ(real.state.wind.u_m_s, steady_wind(3.0, 0.0).state.wind.u_m_s) << "bit for bit";
+  EXPECT_EQ(real.ground.gusts.along_m_s, steady_wind(3.0, 0.0).ground.gusts.along_m_s);
+  EXPECT_EQ(wind.shaping.report().hand, 0.0);
+}
+
+TEST(WindShaping, AWindByHandHasItsOwnMeanAndTurbulenceInACalmAndWhenClosed) {
+  constexpr int kSamples = 10'000;
+  Vector bias;
+  for (const double direction_deg : {25.0, 100.0, 220.0, 310.0}) {
+    ShapedWind wind({.closed_level = 0.0, .turbulence_intensity = 0.2, .length_m = 20.0});
+    wind.after(0.0, kTick_s, false);
+    wind.by_hand.wind = HeldWind{.speed_m_s = 5.0, .direction_deg = direction_deg};
+    wind.after_long(0.0, 60.0, false);
+    const Vector mean = wind_from(5.0, direction_deg);
+    double square = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+      const Vector gust = wind.after(0.0, 0.5, false).state.wind - mean;
+      bias = bias + (1.0 / kSamples) * gust;
+      square += 0.04 * dot(gust, mean) * dot(gust, mean);
+    }
+    EXPECT_GT(std::sqrt(square / kSamples), 0.8 * 0.2 * 5.0) << direction_deg;
+    EXPECT_LT(std::sqrt(square / kSamples), 1.15 * 0.2 * 5.0) << direction_deg;
+  }
+  EXPECT_LT(speed_of(0.25 * bias), 0.1) << "of four ways across the noise";
+}
+
+TEST(WindShaping, WindsByHandThatBeginEndAndReplaceEachOtherNeverJump) {
+  ShapedWind wind({.turbulence_intensity = 0.0});
+  Vector before = wind.after(4.0, kTick_s).state.wind;
+  std::mt19937 random(5);
+  const auto uniform = [&](double to) { return to * static_cast<double>(random()) / 4294967296.0; };
+  // Part, speed and direction are critically damped: a step of 1 changes by at most 1/e and the rate, also where
+  // another follows before it is done (twice that). Of the part 20 + 4 m/s, of the speed 20 m/s, of the turn pi 20 m/s.
+  constexpr double kRate_per_s = 4.75 / WindShaping::kHandOver_s / std::numbers::e;
+  const double most_step_m_s = 2.0 * kRate_per_s * kTick_s * (24.0 + 20.0 + 20.0 * std::numbers::pi);
+  double largest_m_s = 0.0;
+  for (int tick = 0; tick < 60'000; ++tick) {
+    if (random() % 200 == 0) {
+      wind.by_hand.wind = HeldWind{.speed_m_s = uniform(20.0), .direction_deg = uniform(360.0)};
+      if (random() % 3 == 0) wind.by_hand.wind.reset();
+    }
+    const Vector now = wind.after(4.0, kTick_s).state.wind;
+    largest_m_s = std::max(largest_m_s, speed_of(now - before));
+    EXPECT_LE(speed_of(now - before), most_step_m_s) << tick;
+    EXPECT_LE(speed_of(now), 24.0);
+    before = now;
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(largest_m_s, 0.0);
+}
+
+TEST(WindShaping, AnyWindByHandIsFiniteAmongHostileWinds) {
+  WindShaping shaping({.floor_m_s = 1.5, .gusts = 2.0, .ceiling = {.from_m_s = 17.0, .most_m_s = 25.0}},
+                      shared_gusts());
+  std::mt19937 random(7);
+  ByHand by_hand;
+  for (int tick = 0; tick < 5000; ++tick) {
+    if (random() % 50 == 0) by_hand = {.wind = HeldWind{60.0, static_cast<double>(random() % 361)}, .is_dark = true};
+    if (random() % 120 == 0) by_hand = {};
+    ground::DrivingWind wind = hostile_wind(random, kTick_s * tick);
+    shaping.shape(wind, true, true, by_hand);
+    EXPECT_TRUE(std::isfinite(speed_of(wind.state.wind)));
+    EXPECT_LT(speed_of(wind.state.wind), 25.0) << "the ceiling holds by hand, too";
+    EXPECT_NEAR(speed_of(wind.ground.gusts.ahead), 1.0, 1e-9);
+    EXPECT_GE(shaping.report().openness, 0.0);
+    EXPECT_LE(shaping.report().openness, 1.0);
+    if (HasFailure()) return;
+  }
+}
+
+TEST(WindShaping, ABlackoutIsNotOpenWithinItsTimeAndChangesNoWind) {
+  ShapedWind wind({.fade_s = 300.0});
+  wind.after(8.0, kTick_s);
+  wind.by_hand.is_dark = true;
+  expect_same_bits(wind.after_long(8.0, WindShaping::kDarkOver_s), steady_wind(8.0, wind.time_s));
+  EXPECT_LT(wind.shaping.report().openness, 0.06);
+  wind.after_long(8.0, 30.0);
+  EXPECT_EQ(wind.shaping.report().openness, 0.0);
+  wind.by_hand.is_dark = false;
+  wind.after_long(8.0, 30.0);
+  EXPECT_EQ(wind.shaping.report().openness, 1.0);
 }
 
 TEST(WindShaping, HowOpenItIsDoesNotDependOnTheWindThatIsLeftWhenClosed) {
