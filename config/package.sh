@@ -2,7 +2,8 @@
 # Builds the Debian package and prints its path. The same commit gives the same bytes, wherever and whenever it is built with
 # the same Debian packages.
 #
-#   config/package.sh           for this machine's processor
+#   config/package.sh           for this machine's processor; with the viewer for browsers where config/setup.sh --web has installed
+#                               emscripten
 #   config/package.sh --arm64   for arm64 (Raspberry Pi 4 and 5), built here on amd64 with the libraries of config/arm64_sysroot.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -3,6 +3,7 @@
 # run again: installed packages stay.
 #
 #   config/setup.sh          build and run
+#   config/setup.sh --web    and what the viewer for browsers is built with
 #   config/setup.sh --test   and what the tests and the sanitizer builds need besides
 #   config/setup.sh --arm64  and what a package for arm64 is built with here
 #   config/setup.sh --list   prints the names of the packages of --test, as Debian 12 has them
@@ -27,6 +28,9 @@ build_packages=(
   gnuplot-nox                # plots
   tzdata                     # opening hours in local time
   libgl1-mesa-dri libegl-mesa0 libegl1 # the viewer's drivers, with a display and without
+)
+web_packages=(
+  emscripten brotli # WebAssembly, and its form on the wire
 )
 arm64_packages=(
   g++-aarch64-linux-gnu qemu-user-static # its compiler; runs its programs
@@ -72,15 +76,16 @@ finish() { :; }
 case "${1:-}" in
   "") ;;
   --test)
-    packages+=("${test_packages[@]}" "${arm64_packages[@]}")
+    packages+=("${test_packages[@]}" "${web_packages[@]}" "${arm64_packages[@]}")
     command -v npm >/dev/null || packages+=(npm) # Node.js of others brings its own
     finish() {
       install_from_npm browser
       install_from_npm node_red
     } ;;
+  --web) packages+=("${web_packages[@]}") ;;
   --arm64) packages+=("${arm64_packages[@]}") ;;
-  --list) printf '%s\n' "${build_packages[@]%%|*}" "${test_packages[@]}" "${arm64_packages[@]}"; exit 0 ;;
-  *) echo "usage: config/setup.sh [--test | --arm64 | --list]" >&2; exit 64 ;;
+  --list) printf '%s\n' "${build_packages[@]%%|*}" "${test_packages[@]}" "${web_packages[@]}" "${arm64_packages[@]}"; exit 0 ;;
+  *) echo "usage: config/setup.sh [--web | --test | --arm64 | --list]" >&2; exit 64 ;;
 esac
 
 installed() { [ -n "${is_installed[$1]-}" ]; } # PACKAGE

@@ -129,13 +129,17 @@ void Landscape::draw_ground() {
 
 template <class DrawSky>
 void Landscape::draw_behind(const meshes::View& view, DrawSky&& draw_sky) {
-  glBindVertexArray(no_attributes_.name());
-  draw_far_country(view);
+  draw_hills(view);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   // The sky is at the far end of the depth range.
   glDepthFunc(GL_LEQUAL);
   draw_sky();
   glDepthFunc(GL_LESS);
+}
+
+void Landscape::draw_hills(const meshes::View& view) {
+  glBindVertexArray(no_attributes_.name());
+  draw_far_country(view);
 }
 
 void Landscape::draw_sky(const meshes::View& view) {

@@ -36,6 +36,8 @@ class Landscape {
   void draw_ground();
   /// The hills and the sky of the picture.
   void draw_sky(const meshes::View& view);
+  /// The same without the sky.
+  void draw_hills(const meshes::View& view);
   /// The same of a mirror, whose View is bound.
   void draw_mirrored_sky(const meshes::View& view);
 

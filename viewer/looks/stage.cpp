@@ -499,7 +499,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   landscape_.draw_ground();
   mark_pass("ground");
   view_buffer_.set(view);
-  landscape_.draw_sky(view);
+  has_sky_ ? landscape_.draw_sky(view) : landscape_.draw_hills(view);
   mark_pass("hills and sky");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     // A fire lights places beyond its own box.

@@ -61,6 +61,10 @@ class Stage {
   /// From now on meshes are those of a picture whose pixels are this many times as large (1 or more).
   void set_coarseness(float coarseness) { coarseness_ = coarseness; }
 
+  /// From now on the sky is left out: where it was, the picture is transparent, and its colors are multiplied by their
+  /// alpha.
+  void leave_sky_out() { has_sky_ = false; }
+
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
@@ -121,6 +125,7 @@ class Stage {
   gl::ViewBuffer view_buffer_;
   float blade_share_ = 1.0F;
   float coarseness_ = 1.0F;
+  bool has_sky_ = true;
   look::Quality quality_ = look::Quality::kLow;
   std::optional<gl::ShadowMap> shadow_map_;  // created when the sun first shines
   std::optional<gl::Mirror> mirror_;         // created when water first becomes visible

@@ -48,9 +48,10 @@ std::vector<std::string> lines_of(std::string_view lines) {
 
 extern "C" {
 
-/// Begins on the current context, and forgets what was there before. `look`: "time=21:00", a line each. Returns null,
-/// or what is wrong with them.
-[[gnu::used]] const char* wall_open(const char* camera, const char* scene, const char* look, int is_software) {
+/// Begins on the current context, and forgets what was there before. `look`: "time=21:00", a line each.
+/// `is_transparent`: where the sky would be. Returns null, or what is wrong with them.
+[[gnu::used]] const char* wall_open(const char* camera, const char* scene, const char* look, int is_software,
+                                    int is_transparent) {
   return text_of([&]() -> std::optional<std::string> {
     wall.reset();
     picture::ViewerOptions options;
@@ -58,7 +59,7 @@ extern "C" {
     options.scene = scene;
     options.look = lines_of(look);
     if (const auto edited = look::edited({}, options.look); !edited) return edited.error().message;
-    wall.emplace(std::move(options), is_software != 0);
+    wall.emplace(std::move(options), is_software != 0, is_transparent == 0);
     return std::nullopt;
   });
 }

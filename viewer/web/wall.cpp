@@ -25,12 +25,13 @@ pace::Keeper keeper_for(bool is_software) {
 
 }  // namespace
 
-Wall::Wall(picture::ViewerOptions options, bool is_software)
+Wall::Wall(picture::ViewerOptions options, bool is_software, bool has_sky)
     : options_(std::move(options)),
       renderer_(nullptr, options_.width_px, options_.height_px, samples_for(is_software)),
       director_(options_, renderer_, "the daemon"),
       pace_(keeper_for(is_software)) {
   renderer_.set_own_quality(pace_.step().quality);
+  if (!has_sky) renderer_.stage().leave_sky_out();
 }
 
 std::optional<std::string> Wall::take(std::span<const std::uint8_t> message, double now_s) {

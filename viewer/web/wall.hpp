@@ -19,8 +19,8 @@ namespace yuragi::viewer::web {
 class Wall {
  public:
   /// `options`: scene, camera and look, as on the command line; a width and a height that the first picture can have.
-  /// `is_software`: the processor draws.
-  Wall(picture::ViewerOptions options, bool is_software);
+  /// `is_software`: the processor draws. `has_sky`: false leaves the sky out (Stage::leave_sky_out()).
+  Wall(picture::ViewerOptions options, bool is_software, bool has_sky);
   Wall(const Wall&) = delete;
   Wall& operator=(const Wall&) = delete;
 

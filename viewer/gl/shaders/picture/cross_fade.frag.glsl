@@ -15,7 +15,7 @@ vec3 value_of(vec3 light) {
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec3 before = light_of(texelFetch(picture_before, pixel, 0).rgb);
-  vec3 now = light_of(texelFetch(picture_now, pixel, 0).rgb);
-  color = vec4(value_of(mix(before, now, share)), 1.0);
+  vec4 before = texelFetch(picture_before, pixel, 0);
+  vec4 now = texelFetch(picture_now, pixel, 0);
+  color = vec4(value_of(mix(light_of(before.rgb), light_of(now.rgb), share)), mix(before.a, now.a, share));
 }

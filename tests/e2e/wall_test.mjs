@@ -1,0 +1,232 @@
+// The picture alone (/wall) in a real browser: the viewer as WebAssembly, beside the viewer of the desktop.
+// usage: wall_test.py
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import fs from "node:fs";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+import { begin, HANG_MS } from "./chromium.mjs";
+
+const [chromiumPath, programs, tools, screenshots, garden, ...ports] = process.argv.slice(2);
+const [httpPort, streamPort, sensorPort, livePort] = ports;
+/** Pictures that differ by less look the same. In the garden fire, water and the sleeping animal move in still air, too. */
+const LEAST_DB = { garden: 36, meadow: 45, cherry: 45 };
+const TEST_MS = 4 * HANG_MS;
+const STILL_AIR = `
+[wind]
+default_speed = 0.0
+default_turbulence = 0.0
+gustiness = 0.0
+[look]
+time = "14:00"
+clouds = 0.0
+[http]
+listen = "127.0.0.1:${httpPort}"
+[[sensor]]
+name = "calm"
+driver = "synthetic"
+speed = 0.0
+turbulence = 0.0
+`;
+const CAMERA = "200,8,30"; // one that stands still
+let world, url, live;
+
+before(async () => {
+  fs.mkdirSync(screenshots, { recursive: true });
+  world = await begin({ chromiumPath, programs, tools });
+  // The whole garden, in still air.
+  const config = world.file("garden.toml", fs.readFileSync(garden, "utf8").replace(/^\[(wind|look|\[sensor\])\][^[]*/gm, "") + STILL_AIR);
+  await world.start("yuragi", ["run", "--config", config, "--listen", `127.0.0.1:${streamPort}`], /answering at/);
+  url = `http://127.0.0.1:${httpPort}/wall`;
+});
+after(() => world?.end());
+
+const words = (page) => page.evaluate(() => {
+  const notice = document.getElementById("notice");
+  return notice.hidden ? "" : notice.textContent;
+});
+const waitForWords = (page, pattern) => page.waitForFunction((source) => {
+  const notice = document.getElementById("notice");
+  return new RegExp(source).test(notice.hidden ? "" : notice.textContent);
+}, pattern.source);
+/** Waits for so many further pictures. */
+async function waitForPictures(page, count = 3) {
+  const before = await page.evaluate(() => window.wall?.pictures ?? 0);
+  await page.waitForFunction((least) => window.wall?.pictures >= least, before + count);
+}
+async function setQuality(quality) {
+  const answer = await fetch(`http://127.0.0.1:${httpPort}/api/v1/parameters`, {
+    method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ set: { quality } }),
+  });
+  assert.equal(answer.status, 200);
+}
+
+/** What `use` makes of the pixels of pictures, each an ImageData. */
+async function pixels(use, ...files) {
+  const page = await world.browser.newPage(); // another one: the wall's policy lets no data in
+  const sources = files.map((file) => "data:image/png;base64," + fs.readFileSync(file).toString("base64"));
+  const result = await page.evaluate(async ({ sources, use }) => {
+    const pictures = await Promise.all(sources.map(async (source) => {
+      const image = new Image();
+      image.src = source;
+      await image.decode();
+      const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, image.width, image.height);
+    }));
+    return (0, eval)(`(${use})`)(...pictures);
+  }, { sources, use: String(use) });
+  await page.close();
+  return result;
+}
+/** The peak signal-to-noise ratio of two pictures, dB. */
+const psnr = (one, other) => pixels((a, b) => {
+  const sum = a.data.reduce((sum, value, i) => sum + (value - b.data[i]) ** 2, 0);
+  return 10 * Math.log10(255 ** 2 / (sum / a.data.length));
+}, one, other);
+function desktopPicture(name, args) {
+  const file = path.join(screenshots, name + ".png");
+  execFileSync(path.join(programs, "yuragi-viewer"),
+    ["--connect", `127.0.0.1:${streamPort}`, "--size", "320x180", "--samples", "1", "--frames", "3", "--screenshot", file, ...args], { stdio: "pipe" });
+  return file;
+}
+
+test("its picture is the desktop viewer's", { timeout: TEST_MS }, async () => {
+  for (const quality of ["high", "low"]) {
+    for (const scene of ["", "meadow", "cherry"]) { // "": all
+      const shown = scene || "garden";
+      const name = `${shown}-${quality}`;
+      const args = ["--camera", CAMERA, "--look", `quality=${quality}`, ...(scene ? ["--scene", scene] : [])];
+      const query = new URLSearchParams({ camera: CAMERA, look: `quality=${quality}`, words: "0", ...(scene && { scene }) });
+      const desktop = [desktopPicture(`${name}-desktop`, args), desktopPicture(`${name}-desktop-again`, args)];
+      const page = await world.open(`${url}?${query}`);
+      await waitForPictures(page);
+      const file = path.join(screenshots, `${name}-browser.png`);
+      await page.screenshot({ path: file });
+      const apart = await psnr(...desktop);
+      const here = await psnr(desktop[0], file);
+      console.log(`${name}: desktop against desktop ${apart.toFixed(1)} dB, against browser ${here.toFixed(1)} dB`);
+      assert.ok(here >= Math.min(apart - 2, LEAST_DB[shown]), `${name}: ${here} dB`);
+      assert.deepEqual(page.complaints, []);
+      await page.context().close();
+    }
+  }
+});
+
+test("it draws on while the quality changes", { timeout: TEST_MS }, async () => {
+  const page = await world.open(`${url}?words=0`);
+  await waitForPictures(page);
+  for (const quality of ["high", "low", "medium", "high", "low"]) {
+    await setQuality(quality);
+    await page.waitForFunction((name) => window.wall.pace.startsWith("quality " + name), quality);
+    await waitForPictures(page, 2);
+  }
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("it states when nothing is live, when the daemon is gone, and comes back by itself", { timeout: TEST_MS }, async () => {
+  const config = world.file("live.toml", `
+[http]
+listen = "127.0.0.1:${livePort}"
+[[sensor]]
+name = "roof"
+driver = "nmea"
+transport = "tcp"
+host = "127.0.0.1"
+port = ${sensorPort}
+[[scene]]
+name = "meadow"
+kind = "grass"
+blades_across = 20
+blades_deep = 20
+`);
+  const start = () => world.start("yuragi", ["run", "--config", config, "--listen", "127.0.0.1:0"], /answering at/);
+  let daemon = await start();
+  const page = await world.open(`http://127.0.0.1:${livePort}/wall`);
+  await waitForPictures(page);
+  await waitForWords(page, /Synthetic wind, because roof is (connecting|disconnected)/);
+  const sensor = await world.start("yuragi-sim", ["nmea", "--tcp", `127.0.0.1:${sensorPort}`, "--rate", "5"], /listening|127\.0\.0\.1/);
+  await waitForWords(page, /^$/);
+  assert.deepEqual(page.complaints, []);
+  await world.kill(daemon);
+  await waitForWords(page, /No connection since/);
+  await waitForPictures(page); // of its last seconds
+  daemon = await start();
+  await waitForWords(page, /^$/);
+  await waitForPictures(page);
+  await world.kill(sensor);
+  await waitForWords(page, /roof is/);
+  await page.context().close();
+  await world.kill(daemon);
+});
+
+test("it rests while it is hidden", { timeout: TEST_MS }, async () => {
+  const page = await world.open("about:blank");
+  const events = [];
+  page.on("websocket", (socket) => {
+    events.push("opened");
+    socket.on("close", () => events.push("closed"));
+  });
+  const waitForEvents = async (...expected) => {
+    for (const since = Date.now(); events.length < expected.length; await page.waitForTimeout(50)) assert.ok(Date.now() - since < HANG_MS);
+    assert.deepEqual(events, expected);
+  };
+  const hide = (is) => page.evaluate((hidden) => {
+    Object.defineProperty(document, "hidden", { value: hidden, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+  }, is);
+  await page.goto(`${url}?scene=meadow`);
+  await waitForPictures(page);
+  await waitForEvents("opened");
+  await hide(true);
+  await waitForEvents("opened", "closed");
+  await hide(false);
+  await waitForEvents("opened", "closed", "opened");
+  await waitForPictures(page);
+  await page.context().close();
+});
+
+test("it begins again after the graphics card was reset", { timeout: TEST_MS }, async () => {
+  const page = await world.open(`${url}?scene=meadow`);
+  await waitForPictures(page);
+  await page.evaluate(() => {
+    window.lost = document.getElementById("wall").getContext("webgl2").getExtension("WEBGL_lose_context");
+    window.lost.loseContext();
+  });
+  await waitForWords(page, /graphics card was reset/);
+  assert.equal(await page.evaluate(() => window.wall.pictures), 0);
+  await page.evaluate(() => window.lost.restoreContext());
+  await waitForPictures(page);
+  await waitForWords(page, /^(?!.*graphics card)/);
+  await page.context().close();
+});
+
+test("it leaves the sky out for another picture behind it", { timeout: TEST_MS }, async () => {
+  const page = await world.open(`${url}?${new URLSearchParams({ camera: CAMERA, scene: "meadow", transparent: "1", words: "0" })}`);
+  await waitForPictures(page);
+  const file = path.join(screenshots, "transparent.png");
+  await page.screenshot({ path: file, omitBackground: true });
+  const alphas = await pixels(({ data, width, height }) => [data[4 * 10 * width + 3], data[4 * (height - 10) * width + 3]], file);
+  assert.deepEqual(alphas, [0, 255], "sky, meadow");
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("it states what is wrong with its address, or with this browser", { timeout: TEST_MS }, async () => {
+  for (const [query, pattern] of [["camera=nowhere", /has no camera 'nowhere'/], ["scene=nothing", /has no scene 'nothing'/], ["look=time=25:00", /time/]]) {
+    const page = await world.open(`${url}?${query}`);
+    await waitForWords(page, pattern);
+    await page.context().close();
+  }
+  const page = await world.open("about:blank");
+  await page.route("**/wall/viewer.js", (route) => route.fulfill({ status: 404, body: "" }));
+  await page.goto(url);
+  await waitForWords(page, /not installed/);
+  await page.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+  await page.unroute("**/wall/viewer.js");
+  await page.goto(url);
+  await waitForWords(page, /WebGL 2/);
+  await page.context().close();
+});
