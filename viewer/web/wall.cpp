@@ -48,10 +48,6 @@ std::optional<std::string> Wall::take(std::span<const std::uint8_t> message, dou
   } else if (const auto* sensors = std::get_if<wire::Sensors>(&*decoded)) {
     has_status_ = true;
     director_.take_status(*sensors);
-  } else if (const auto* hello = std::get_if<wire::Hello>(&*decoded)) {
-    if (hello->refused) return *hello->refused;
-    if (auto mismatch = wire::protocol_mismatch(*hello)) return mismatch;
-    if (hello->wind_from_deg) director_.set_wind_from(*hello->wind_from_deg);
   }
   return std::nullopt;
 }
