@@ -26,6 +26,7 @@
 #include "tests/support/places.hpp"
 #include "viewer/gl/edge_smoother.hpp"
 #include "viewer/gl/headless_context.hpp"
+#include "viewer/gl/pass_clock.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/pace/pace_ladder.hpp"
 #include "viewer/pace/quality.hpp"
