@@ -1,6 +1,7 @@
 """Does the viewer use only what its oldest context has? Each name of OpenGL in viewer/ that is newer than 3.1 must be of
 an extension that viewer/gl/driver.hpp demands, or its file must ask for the extension. And each name must be in OpenGL ES
-3.0, too, which browsers have as WebGL 2, but in the files that a browser's viewer does without.
+3.0, too, which browsers have as WebGL 2, but in the files that a browser's viewer does without. What only a browser
+runs (viewer/web) needs no more than that.
 
     gl_names.py SOURCE_FOLDER      exit code 1 and the file, line and name where one is not
 
@@ -14,6 +15,7 @@ HEADER = pathlib.Path("/usr/include/GL/glcorearb.h")  # libgl-dev, on which libe
 OLDEST = (3, 1)
 ES_HEADER = pathlib.Path("/usr/include/GLES3/gl3.h")  # libgles-dev, on which libglfw3-dev depends by libgl1-mesa-dev
 DESKTOP_FILES = {"viewer/gl/driver_reports.cpp", "viewer/gl/pass_clock.cpp"}
+BROWSER_FOLDER = "viewer/web/"
 
 # The extensions that have what is used of newer versions, for older contexts.
 EXTENSION_OF = {
@@ -80,7 +82,8 @@ def check(folder):
     of_version = versions()
     demanded = re.findall(r'NeededExtension\{"(\w+)"', (folder / "viewer/gl/driver.hpp").read_text())
     files = sorted(f for f in (folder / "viewer").rglob("*.[ch]pp"))
-    faults = [fault for f in files for fault in faults_of(f.relative_to(folder), f.read_text(), of_version, demanded)]
+    faults = [fault for f in files if not str(f.relative_to(folder)).startswith(BROWSER_FOLDER)
+              for fault in faults_of(f.relative_to(folder), f.read_text(), of_version, demanded)]
     of_es = names_of_es()
     for f in files:
         if str(f.relative_to(folder)) not in DESKTOP_FILES:
