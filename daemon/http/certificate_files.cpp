@@ -49,6 +49,8 @@ Result<Certificate, Failure> read(const std::filesystem::path& certificate, cons
   };
   const auto certificate_text = platform::read_whole(certificate, kMaxFile_bytes);
   if (!certificate_text) return fail("certificate", certificate, certificate_text.error().message);
+  if (key.empty())
+    return Failure{"[http] key: is missing: name the file with the key of the certificate", FailureKind::kUnavailable};
   const auto key_text = platform::read_whole(key, kMaxFile_bytes);
   if (!key_text) return fail("key", key, key_text.error().message);
 

@@ -133,8 +133,7 @@ const Fields<HttpConfig>& http_fields() {
 std::vector<ParameterError> fill_http(HttpConfig& http, const ParameterValues& values) {
   http = {};
   std::vector<ParameterError> errors = http_fields().fill(http, values.all());
-  if (http.certificate.empty() != http.key.empty())
-    errors.push_back({http.key.empty() ? "certificate" : "key", "certificate and key need each other"});
+  if (!http.key.empty() && http.certificate.empty()) errors.push_back({"key", "needs the certificate that it is for"});
   if (http.reading_takes_token && http.token_file.empty())
     errors.push_back({"readers", "\"token\" needs a token_file; `yuragi token --new` makes one"});
   return errors;

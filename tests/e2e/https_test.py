@@ -227,6 +227,12 @@ class Https(unittest.TestCase):
         checked = subprocess.run([YURAGI, "check-config", self.path("yuragi.toml")], capture_output=True, text=True)
         self.assertNotEqual(checked.returncode, 0)
         self.assertRegex(checked.stderr, r"\[http\] key: .*wall.key. does not exist")
+        for name, value, why in (("certificate", self.certificate, "[http] key: is missing"), ("key", self.key, "half.toml:2:7: http.key: needs the certificate")):
+            with open(self.path("half.toml"), "w", encoding="utf-8") as config:
+                config.write(f'[http]\n{name} = "{value}"\n')
+            checked = subprocess.run([YURAGI, "check-config", self.path("half.toml")], capture_output=True, text=True)
+            self.assertNotEqual(checked.returncode, 0)
+            self.assertIn(why, checked.stderr)
         os.rename(self.key + ".away", self.key)
         daemon.wait_for(r"answering at https://")
         os.chmod(self.key, 0o644)

@@ -30,12 +30,12 @@ TEST(Page, EachFileIsServed_WithItsTypeAndAStrictPolicy) {
     EXPECT_FALSE(file.text.empty()) << file.path;
     EXPECT_THAT(response->fields, Contains(Pair("Cache-Control", "no-cache")));
     const bool compiles = file.path == "/wall";  // the picture, which is WebAssembly
-    EXPECT_THAT(
-        response->fields,
-        Contains(Pair("Content-Security-Policy",
-                      std::string("default-src 'none'; script-src 'self'") + (compiles ? " 'wasm-unsafe-eval'" : "") +
-                          "; style-src 'self'; connect-src 'self'; img-src 'self'; manifest-src 'self'; "
-                          "base-uri 'none'; form-action 'none'; frame-ancestors 'none'")));
+    EXPECT_THAT(response->fields,
+                Contains(Pair("Content-Security-Policy",
+                              std::string("default-src 'none'; style-src 'self'; script-src 'self'") +
+                                  (compiles ? " 'wasm-unsafe-eval'" : "") +
+                                  "; connect-src 'self'; img-src 'self'; manifest-src 'self'; base-uri 'none'; "
+                                  "form-action 'none'; frame-ancestors 'none'")));
   }
   EXPECT_EQ(paths, (std::set<std::string_view>{"/", "/icon.svg", "/manifest.webmanifest", "/page.css", "/page.js",
                                                "/wall", "/wall.css", "/wall.js"}));
