@@ -45,6 +45,7 @@ test_packages=(
   ola ola-python                                          # an independent receiver of sACN and Art-Net
   puredata-core python3-yaml                              # run and read examples
   avahi-daemon avahi-utils dbus-daemon iproute2           # services that a network's programs find, in networks of a test's own
+  nginx-light caddy                                       # proxies in front of the page
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
@@ -158,10 +159,14 @@ install_missing() {
     exit 1
   fi
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
-  # Its package starts a server that listens to every network; the test starts its own.
-  if [[ " ${missing[*]} " = *" ola "* ]] && [ -d /run/systemd/system ]; then
-    "${as_root[@]}" systemctl disable --now olad || echo "setup: olad could not be disabled: systemctl disable --now olad"
-  fi
+  # Their packages start servers that listen to every network; the tests start their own.
+  local pair service
+  for pair in ola:olad nginx-light:nginx caddy:caddy; do
+    service=${pair#*:}
+    if [[ " ${missing[*]} " = *" ${pair%:*} "* ]] && [ -d /run/systemd/system ]; then
+      "${as_root[@]}" systemctl disable --now "$service" || echo "setup: $service could not be disabled: systemctl disable --now $service"
+    fi
+  done
 }
 
 find_missing

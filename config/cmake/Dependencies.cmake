@@ -18,6 +18,7 @@ pkg_check_modules(MOSQUITTO REQUIRED IMPORTED_TARGET libmosquitto)
 pkg_check_modules(LIBLO REQUIRED IMPORTED_TARGET liblo)
 pkg_check_modules(PROMETHEUS REQUIRED IMPORTED_TARGET prometheus-cpp-core)
 pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET libcrypto)
+pkg_check_modules(SSL REQUIRED IMPORTED_TARGET libssl)
 pkg_check_modules(CURL REQUIRED IMPORTED_TARGET libcurl)
 pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(JPEG REQUIRED IMPORTED_TARGET libjpeg)
@@ -33,9 +34,17 @@ file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/asio.cpp CONTENT "#include <bo
 add_library(yuragi_asio STATIC ${CMAKE_CURRENT_BINARY_DIR}/asio.cpp)
 target_compile_definitions(yuragi_asio PUBLIC BOOST_ASIO_SEPARATE_COMPILATION)
 target_link_libraries(yuragi_asio PUBLIC Boost::headers Threads::Threads)
+
+# Its TLS likewise, for those alone who use it.
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/asio_tls.cpp CONTENT "#include <boost/asio/ssl/impl/src.hpp>\n")
+add_library(yuragi_asio_tls STATIC ${CMAKE_CURRENT_BINARY_DIR}/asio_tls.cpp)
+target_link_libraries(yuragi_asio_tls PUBLIC yuragi_asio PkgConfig::SSL PkgConfig::CRYPTO)
+set_target_properties(yuragi_asio_tls PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
 if(YURAGI_SANITIZE)
-  target_compile_options(yuragi_asio PRIVATE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
+  foreach(library yuragi_asio yuragi_asio_tls)
+    target_compile_options(${library} PRIVATE -fsanitize=${YURAGI_SANITIZE} -fno-omit-frame-pointer
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
+  endforeach()
 endif()
 
 if(YURAGI_VIEWER)

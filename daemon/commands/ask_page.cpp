@@ -44,8 +44,9 @@ Address address_of(const std::string& listen) {
 }  // namespace
 
 nlohmann::json ask_page(const PageRequest& request) {
-  const std::string place = to_string(address_of(request.listen));
-  const std::string url = "http://" + place + request.path;
+  const bool is_tls = !request.certificate.empty();
+  const std::string place = (is_tls ? "https://" : "http://") + to_string(address_of(request.listen));
+  const std::string url = place + request.path;
   const std::string agent = with_version("yuragi");
   std::string answer;
   const Handle handle(curl_easy_init(), &curl_easy_cleanup);
@@ -53,7 +54,11 @@ nlohmann::json ask_page(const PageRequest& request) {
   if (!handle || !fields) throw FailureError({"out of memory for a request"});
   CURL* const curl = handle.get();
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
-  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http");
+  curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, is_tls ? "https" : "http");
+  if (is_tls) {
+    curl_easy_setopt(curl, CURLOPT_CAINFO, request.certificate.c_str());
+    curl_easy_setopt(curl, CURLOPT_SSL_VERIFYHOST, 0L);  // it is for a name, and this machine is asked by address
+  }
   curl_easy_setopt(curl, CURLOPT_NOPROXY, "*");  // the token is for this machine only
   curl_easy_setopt(curl, CURLOPT_USERAGENT, agent.c_str());
   curl_easy_setopt(curl, CURLOPT_HTTPAUTH, CURLAUTH_BEARER);
@@ -70,7 +75,7 @@ nlohmann::json ask_page(const PageRequest& request) {
 
   if (const CURLcode code = curl_easy_perform(curl); code != CURLE_OK) {
     throw FailureError(
-        {fmt::format("no daemon replies at http://{} ({}): is `yuragi run` running?", place, curl_easy_strerror(code)),
+        {fmt::format("no daemon replies at {} ({}): is `yuragi run` running?", place, curl_easy_strerror(code)),
          FailureKind::kUnavailable});
   }
   long status = 0;
@@ -78,7 +83,7 @@ nlohmann::json ask_page(const PageRequest& request) {
   nlohmann::json json = nlohmann::json::parse(answer, nullptr, false);
   if (!json.is_object()) {
     throw FailureError(
-        {fmt::format("http://{} replies with something other than JSON (HTTP {}): it is not the daemon", place, status),
+        {fmt::format("{} replies with something other than JSON (HTTP {}): it is not the daemon", place, status),
          FailureKind::kUnavailable});
   }
   if (status >= 200 && status < 300) return json;
@@ -86,7 +91,7 @@ nlohmann::json ask_page(const PageRequest& request) {
   std::string why = detail != json.end() && detail->is_string() ? detail->get<std::string>() : "no reason is given";
   make_printable(why);
   throw ExitError(status == kHttpUnauthorized ? kExitNoPermission : kExitSoftware,
-                  fmt::format("the daemon at http://{} refuses this (HTTP {}): {}", place, status, why));
+                  fmt::format("the daemon at {} refuses this (HTTP {}): {}", place, status, why));
 }
 
 }  // namespace yuragi::daemon::commands

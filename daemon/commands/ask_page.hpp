@@ -15,6 +15,8 @@ struct PageRequest {
   std::string path = {};    ///< "/api/v1/sessions"
   std::string body = {};    ///< JSON to POST; empty: GET
   Secret token = {};
+  /// [http] certificate: the daemon answers by TLS, and must have it or one that it vouches for; empty: in the clear.
+  std::string certificate = {};
 };
 
 /// Returns the JSON that the daemon answers. Throws FailureError (kUnavailable) if none answers within 10 s, or its

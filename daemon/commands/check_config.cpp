@@ -11,6 +11,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
+#include "daemon/http/certificate_files.hpp"
 #include "daemon/service/config_check.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/config_file.hpp"
@@ -178,6 +179,7 @@ void rehearse(const settings::Config& config, const CheckOptions& options) {
 void check_config(const CheckOptions& options) {
   const settings::Config config = settings::load_config(options.file);
   service::check(config);
+  if (!config.http.certificate.empty()) http::CertificateFiles(config.http.certificate, config.http.key);
   if (options.as_service) return rehearse(config, options);
   for (const std::string& warning : settings::exposed_secrets(config, options.file)) {
     fmt::print(stderr, "warning: {}\n", warning);

@@ -94,14 +94,15 @@ void show_sessions(const PageRequest& request, bool as_json) {
 }
 
 /// Asks the running daemon for the sessions, or to end one.
-void handle_sessions(const TokenOptions& options, const std::string& listen, const Secret& token) {
-  if (listen.empty()) {
+void handle_sessions(const TokenOptions& options, const settings::HttpConfig& http, const Secret& token) {
+  if (http.listen.empty()) {
     throw ExitError(
         kExitConfig,
         options.config_file.string() +
             ": [http] listen is missing, so no browser can be paired with this daemon; set it to HOST:PORT");
   }
-  PageRequest request{.listen = listen, .path = std::string(web::kSessionsPath), .token = token};
+  PageRequest request{
+      .listen = http.listen, .path = std::string(web::kSessionsPath), .token = token, .certificate = http.certificate};
   if (!options.revoked_id) return show_sessions(request, options.as_json);
   request.body = json_text(nlohmann::json{{"revoke", *options.revoked_id}});
   ask_page(request);
@@ -121,7 +122,7 @@ void show_token(const TokenOptions& options) {
   if (!token)
     throw ExitError(kExitUnavailable, "token_file: " + token.error().message + "; `yuragi token --new` makes one");
 
-  if (options.lists_sessions || options.revoked_id) return handle_sessions(options, config.http.listen, *token);
+  if (options.lists_sessions || options.revoked_id) return handle_sessions(options, config.http, *token);
   const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
   const double step_s = web::Access::kCodeStep_s;
   const double left_s = 2.0 * step_s - std::fmod(utc_s, step_s);

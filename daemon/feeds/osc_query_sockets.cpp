@@ -66,13 +66,13 @@ struct OscQuerySockets::Shared {
 class OscQuerySockets::Client : public std::enable_shared_from_this<Client> {
  public:
   Client(http::Upgrade& upgrade, std::shared_ptr<Shared> shared)
-      : stream_(std::move(upgrade.socket)),
+      : stream_(std::move(upgrade.bytes)),
         request_(std::move(upgrade.request)),
         peer_(std::move(upgrade.client)),
         shared_(std::move(shared)) {
     error_code ignored;
-    stream_.next_layer().set_option(asio::ip::tcp::no_delay(true), ignored);
-    stream_.next_layer().set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+    stream_.next_layer().socket().set_option(asio::ip::tcp::no_delay(true), ignored);
+    stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
     stream_.set_option(websocket::stream_base::timeout{
         .handshake_timeout = kStuckAfter, .idle_timeout = kSilentAfter, .keep_alive_pings = true});
     stream_.read_message_max(kMaxMessageBytes);
@@ -125,7 +125,7 @@ class OscQuerySockets::Client : public std::enable_shared_from_this<Client> {
   void end() {
     has_ended_ = true;
     error_code ignored;
-    stream_.next_layer().close(ignored);
+    stream_.next_layer().socket().close(ignored);
   }
 
  private:
@@ -188,7 +188,7 @@ class OscQuerySockets::Client : public std::enable_shared_from_this<Client> {
                         });
   }
 
-  websocket::stream<asio::ip::tcp::socket, false> stream_;
+  websocket::stream<http::ByteStream, false> stream_;
   beast::http::request<beast::http::string_body> request_;
   stream::Peer peer_;
   std::shared_ptr<Shared> shared_;

@@ -12,7 +12,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
@@ -20,7 +19,11 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
+#include <openssl/err.h>
+#include <openssl/sslerr.h>
 
+#include "daemon/http/byte_stream.hpp"
+#include "daemon/http/certificate_files.hpp"
 #include "daemon/http/file_body.hpp"
 #include "daemon/http/upgrade.hpp"
 #include "daemon/stream/tcp_listening.hpp"
@@ -59,6 +62,19 @@ std::optional<Response> refusal_of(const error_code& error) {
 
 constexpr const char* kRetryAfter_s = "10";
 
+/// An answer outside of Beast: to those who get no place, and to those who do not use TLS.
+std::string bare_answer(std::string_view status, std::string_view fields, std::string_view text) {
+  return fmt::format(
+      "HTTP/1.1 {}\r\nContent-Type: text/plain; charset=utf-8\r\n{}Connection: close\r\nContent-Length: {}\r\n\r\n{}\n",
+      status, fields, text.size() + 1, text);
+}
+
+/// Returns true if a handshake failed because the client sent a request in the clear.
+bool is_clear_http(const error_code& error) {
+  return error.category() == asio::error::get_ssl_category() &&
+         ERR_GET_REASON(static_cast<unsigned long>(error.value())) == SSL_R_HTTP_REQUEST;
+}
+
 /// A file that is being sent.
 struct Sending {
   Sending(asio::io_context& io, std::shared_ptr<const FileBody> file) : body(std::move(file)), pipe(io), patience(io) {}
@@ -78,33 +94,32 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Why `client` gets no place of Limits::clients; nullopt if it gets one.
   using Admission = std::function<std::optional<std::string>(const stream::Peer& client)>;
 
-  Connection(asio::io_context& io, tcp::socket socket, stream::Peer client, const Limits& limits,
-             const Server::Handler& handler, Admission admission)
+  /// `tls`: null: in the clear.
+  Connection(asio::io_context& io, tcp::socket socket, asio::ssl::context* tls, stream::Peer client,
+             const Limits& limits, const Server::Handler& handler, Admission admission)
       : io_(io),
-        stream_(std::move(socket)),
+        stream_(std::move(socket), tls),
         client_(std::move(client)),
         limits_(limits),
         handler_(handler),
         admission_(std::move(admission)),
         buffer_(limits.header_bytes + limits.body_bytes) {}
 
-  void read() {
-    parser_.emplace();
-    parser_->header_limit(limits_.header_bytes);
-    parser_->body_limit(limits_.body_bytes);
-    stream_.expires_after(limits_.time);
-    beast_http::async_read(
-        stream_, buffer_, *parser_,
-        [self = shared_from_this()](const error_code& error, std::size_t) { self->go_on([&] { self->take(error); }); });
+  void begin() {
+    if (!stream_.is_tls()) return read();
+    stream_.tcp().expires_after(limits_.time);
+    stream_.tls().async_handshake(asio::ssl::stream_base::server, [self = shared_from_this()](const error_code& error) {
+      self->go_on([&] { self->finish_handshake(error); });
+    });
   }
   void end() {
+    if (std::exchange(has_ended_, true)) return;  // its stream may be another's by now
     error_code ignored;
     stream_.socket().close(ignored);
     if (sending_) {
       sending_->pipe.close(ignored);
       sending_->patience.cancel();
     }
-    has_ended_ = true;
   }
   bool has_ended() const { return has_ended_; }
   const stream::Peer& client() const { return client_; }
@@ -116,6 +131,27 @@ class Connection : public std::enable_shared_from_this<Connection> {
   template <class Work>
   void go_on(Work&& work) {
     if (!contain("an HTTP connection", std::forward<Work>(work))) end();
+  }
+
+  void finish_handshake(const error_code& error) {
+    if (has_ended_) return;
+    if (!error) return read();
+    if (!is_clear_http(error)) return end();
+    bare_ = bare_answer("400 Bad Request", "", "this port is for HTTPS: the address begins with https://");
+    asio::async_write(stream_.tcp(), asio::buffer(bare_),
+                      [self = shared_from_this()](const error_code& failed, std::size_t) {
+                        self->go_on([&] { failed || self->has_ended_ ? self->end() : self->hang_up_tcp(); });
+                      });
+  }
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(limits_.header_bytes);
+    parser_->body_limit(limits_.body_bytes);
+    stream_.tcp().expires_after(limits_.time);
+    beast_http::async_read(
+        stream_, buffer_, *parser_,
+        [self = shared_from_this()](const error_code& error, std::size_t) { self->go_on([&] { self->take(error); }); });
   }
 
   void take(const error_code& error) {
@@ -146,7 +182,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .body = message.body(),
         .forwarded_for = text_of(message["X-Forwarded-For"]),
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
-        .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
+        .is_https = stream_.is_tls() || text_of(message["X-Forwarded-Proto"]) == "https",
         .is_websocket = parser_->upgrade() && beast::iequals(message[beast_http::field::upgrade], "websocket"),
         .client = client_};
     if (!request.is_websocket && !has_place_) {
@@ -181,7 +217,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     message_.body() = std::move(response.body);
     message_.prepare_payload();
     if (is_head_) message_.body().clear();  // its length stays in the header
-    stream_.expires_after(limits_.time);
+    stream_.tcp().expires_after(limits_.time);
     beast_http::async_write(stream_, message_, [self = shared_from_this()](const error_code& error, std::size_t) {
       self->go_on([&] { self->finish(error); });
     });
@@ -213,7 +249,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     set_header(sending_->header, response);
     sending_->header.content_length(response.file->bytes());
     sending_->serializer.emplace(sending_->header);
-    stream_.expires_after(limits_.time);
+    stream_.tcp().expires_after(limits_.time);
     beast_http::async_write_header(stream_, *sending_->serializer,
                                    [self = shared_from_this()](const error_code& error, std::size_t) {
                                      self->go_on([&] { self->begin_file(error); });
@@ -240,7 +276,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (error || has_ended_) return end();
     sending_->patience.cancel();
     sending_->left_bytes -= size;
-    stream_.expires_after(limits_.time);
+    stream_.tcp().expires_after(limits_.time);
     asio::async_write(stream_, asio::buffer(sending_->piece, size),
                       [self = shared_from_this()](const error_code& failed, std::size_t) {
                         self->go_on([&] {
@@ -256,23 +292,29 @@ class Connection : public std::enable_shared_from_this<Connection> {
       is_last_ = true;
       return write(plain(400, "bytes follow the request for a WebSocket before it is answered"));
     }
-    stream_.expires_never();
-    Upgrade upgrade{.socket = stream_.release_socket(), .request = parser_->release(), .client = client_};
+    stream_.tcp().expires_never();
+    Upgrade upgrade{.bytes = std::move(stream_), .request = parser_->release(), .client = client_};
     has_ended_ = true;
     contain("opening a WebSocket", [&] { take_over(upgrade); });
   }
 
   /// Closes once the client has: closing before it does would take the answer from it.
   void hang_up() {
+    if (!stream_.is_tls()) return hang_up_tcp();
+    stream_.tcp().expires_after(limits_.time);
+    stream_.tls().async_shutdown([self = shared_from_this()](const error_code&) { self->end(); });
+  }
+  void hang_up_tcp() {
     error_code ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
     buffer_.clear();
-    stream_.async_read_some(buffer_.prepare(buffer_.max_size()),
-                            [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
+    stream_.tcp().expires_after(limits_.time);
+    stream_.tcp().async_read_some(buffer_.prepare(buffer_.max_size()),
+                                  [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
   }
 
   asio::io_context& io_;
-  beast::tcp_stream stream_;
+  ByteStream stream_;
   stream::Peer client_;
   const Limits& limits_;
   const Server::Handler& handler_;
@@ -280,6 +322,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   beast::flat_buffer buffer_;
   std::optional<beast_http::request_parser<beast_http::string_body>> parser_;
   beast_http::response<beast_http::string_body> message_;
+  std::string bare_;                  ///< an answer in the clear to who does not use TLS
   std::unique_ptr<Sending> sending_;  ///< null: no file is being sent
   bool has_place_ = false;
   bool is_head_ = false;
@@ -291,12 +334,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 class Server::Listener : public std::enable_shared_from_this<Listener> {
  public:
-  Listener(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler)
+  Listener(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler,
+           std::shared_ptr<const CertificateFiles> certificate)
       : io_(io),
         acceptor_(stream::open_acceptor(io, listen)),
         again_(io),
         limits_(limits),
-        handler_(std::move(handler)) {
+        handler_(std::move(handler)),
+        certificate_(std::move(certificate)) {
     const tcp::endpoint endpoint = acceptor_.local_endpoint();
     endpoint_ = to_string(Address{endpoint.address().to_string(), endpoint.port()});
   }
@@ -342,13 +387,15 @@ class Server::Listener : public std::enable_shared_from_this<Listener> {
     const asio::ip::address address = stream::unmapped(endpoint.address());
     stream::Peer client{.address = address.to_string(), .is_local = address.is_loopback()};
     if (const auto why = stream::admission_refusal(limits_.newcomers, present(false), client)) {
-      return turn_away(std::move(socket), *why);
+      if (!certificate_) turn_away(std::move(socket), *why);
+      return;
     }
+    const auto tls = certificate_ ? certificate_->context() : nullptr;  // OpenSSL keeps what a connection uses
     connections_.push_back(std::make_shared<Connection>(
-        io_, std::move(socket), std::move(client), limits_, handler_, [this](const stream::Peer& asking) {
+        io_, std::move(socket), tls.get(), std::move(client), limits_, handler_, [this](const stream::Peer& asking) {
           return stream::admission_refusal(limits_.clients, present(true), asking);
         }));
-    connections_.back()->read();
+    connections_.back()->begin();
   }
 
   std::vector<stream::Peer> present(bool with_place) const {
@@ -361,10 +408,8 @@ class Server::Listener : public std::enable_shared_from_this<Listener> {
 
   /// In one write that fits into an empty socket buffer.
   static void turn_away(tcp::socket socket, const std::string& why) {
-    const std::string answer = fmt::format(
-        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain; charset=utf-8\r\nRetry-After: {}\r\n"
-        "Connection: close\r\nContent-Length: {}\r\n\r\n{}\n",
-        kRetryAfter_s, why.size() + 1, why);
+    const std::string answer =
+        bare_answer("503 Service Unavailable", fmt::format("Retry-After: {}\r\n", kRetryAfter_s), why);
     error_code ignored;
     socket.non_blocking(true, ignored);
     socket.write_some(asio::buffer(answer), ignored);
@@ -376,13 +421,15 @@ class Server::Listener : public std::enable_shared_from_this<Listener> {
   asio::steady_timer again_;
   Limits limits_;
   Handler handler_;
+  std::shared_ptr<const CertificateFiles> certificate_;  ///< null: in the clear
   std::string endpoint_;
   std::vector<std::shared_ptr<Connection>> connections_;
   bool is_closed_ = false;
 };
 
-Server::Server(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler)
-    : listener_(std::make_shared<Listener>(io, listen, limits, std::move(handler))) {
+Server::Server(asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler,
+               std::shared_ptr<const CertificateFiles> certificate)
+    : listener_(std::make_shared<Listener>(io, listen, limits, std::move(handler), std::move(certificate))) {
   listener_->accept();
 }
 Server::~Server() {

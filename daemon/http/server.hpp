@@ -34,13 +34,14 @@ struct Request {
   std::string body = {};
   std::string forwarded_for = {};  ///< X-Forwarded-For: for whom a proxy sends it
   bool is_forwarded = false;       ///< a proxy states that it sends it for another client
-  bool is_https = false;           ///< a proxy states that it received it by HTTPS
+  bool is_https = false;           ///< by TLS, or a proxy states that it received it by HTTPS
   bool is_websocket = false;       ///< it asks for a WebSocket
   stream::Peer client = {};
 };
 
-struct Upgrade;  // upgrade.hpp
-class FileBody;  // file_body.hpp
+struct Upgrade;          // upgrade.hpp
+class FileBody;          // file_body.hpp
+class CertificateFiles;  // certificate_files.hpp
 
 struct Response {
   unsigned status = 200;
@@ -76,9 +77,11 @@ class Server {
  public:
   using Handler = std::function<void(const Request& request, Reply reply)>;
 
-  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) if that is not
-  /// possible.
-  Server(boost::asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler);
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). `certificate`: connections are by TLS, whose
+  /// handshake counts as the wait for the first request; null: in the clear. Throws FailureError (kUnavailable) if that
+  /// is not possible.
+  Server(boost::asio::io_context& io, std::string_view listen, const Limits& limits, Handler handler,
+         std::shared_ptr<const CertificateFiles> certificate = nullptr);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

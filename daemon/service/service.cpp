@@ -109,11 +109,12 @@ std::vector<std::string> names_of(const std::vector<look::Camera>& cameras) {
   return names;
 }
 
-/// The page's address for other machines. `endpoint`: where it listens.
-std::string page_url(const std::string& endpoint) {
-  Address address = parse_address(endpoint).value();
+/// The page's address for other machines.
+std::string page_url(const web::Server& server) {
+  Address address = parse_address(server.local_endpoint()).value();
   if (address.host == "0.0.0.0" || address.host == "::") address.host = asio::ip::host_name();
-  return "http://" + to_string(address) + "/";
+  const std::string local = server.address();
+  return local.substr(0, local.size() - server.local_endpoint().size()) + to_string(address) + "/";
 }
 
 wire::Lateness lateness_of(const animation::RecentLateness& recent) {
@@ -187,7 +188,7 @@ class Service::Io {
     for (const int signal : {SIGINT, SIGTERM}) signals_.add(signal);
     ignore_what_need_not_end_it();
     spdlog::info("listening on {}", stream_.local_endpoint());
-    if (web_) spdlog::info("answering at http://{}", web_->local_endpoint());
+    if (web_) spdlog::info("answering at {}", web_->address());
     if (recorder_ && recorder_->status().error.empty()) spdlog::info("recording to {}", options_.record->string());
     if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
 
@@ -267,6 +268,8 @@ class Service::Io {
                                        .least_free_bytes = least_free_bytes_,
                                        .configuration = options_.config_file,
                                        .stream = stream_.local_endpoint()},
+                           .certificate = http_.certificate,
+                           .key = http_.key,
                            .guide = web::installed_folder("guide"),
                            .viewer = web::installed_folder("wall"),
                            .software = with_version("yuragi"),
@@ -357,7 +360,7 @@ class Service::Io {
     }
     if (page_trouble_.empty()) return;
     open_page();
-    if (web_) spdlog::info("answering at http://{}", web_->local_endpoint());
+    if (web_) spdlog::info("answering at {}", web_->address());
   }
 
   static stream::AdmissionLimits admission_of(const settings::StreamConfig& stream) {
@@ -422,6 +425,7 @@ class Service::Io {
   }
 
   void reload(const std::string& expected_file, Reload::Reply reply) {
+    if (web_) web_->renew_certificate();
     reload_.request(expected_file, std::move(reply));
     if (reload_.is_under_way()) manager_.report_reloading();
   }
@@ -492,7 +496,7 @@ class Service::Io {
 
   /// Feeds show and hide scenes by a right of their own.
   feeds::Surroundings surroundings() {
-    return {.page_url = web_ ? page_url(web_->local_endpoint()) : std::string(),
+    return {.page_url = web_ ? page_url(*web_) : std::string(),
             .page_listen = http_.listen,
             .show_scene = [this](const std::string& scene, bool shown) {
               asio::post(io_, [this, scene, shown] { show_scene({.scene = scene, .shown = shown}); });
@@ -650,6 +654,8 @@ class Service::Io {
     }
     if (recorder_) status.recorder = to_wire(recorder_->status());
     status.troubles = troubles();
+    if (auto trouble = web_ ? web_->certificate_trouble() : std::nullopt)
+      status.troubles.push_back(std::move(*trouble));
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;

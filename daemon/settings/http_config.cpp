@@ -115,6 +115,17 @@ const Fields<HttpConfig>& http_fields() {
         .help = "a folder with pages of your own, served at /site/; files up to 8 MiB, without those whose name begins "
                 "with a dot; empty: none"},
        &HttpConfig::folder},
+      {{.name = "certificate",
+        .default_value = std::string(),
+        .help = "a file with the certificate of this machine and those that link it to a root (PEM, fullchain.pem of "
+                "certbot): the page and HTTP are served by TLS, as https://; read again at each reload and every hour; "
+                "empty: in the clear"},
+       &HttpConfig::certificate},
+      {{.name = "key",
+        .default_value = std::string(),
+        .help = "a file with the private key of the certificate (PEM, without a password)",
+        .is_secret_file = true},
+       &HttpConfig::key},
   };
   return kFields;
 }
@@ -122,6 +133,7 @@ const Fields<HttpConfig>& http_fields() {
 std::vector<ParameterError> fill_http(HttpConfig& http, const ParameterValues& values) {
   http = {};
   std::vector<ParameterError> errors = http_fields().fill(http, values.all());
+  if (!http.key.empty() && http.certificate.empty()) errors.push_back({"key", "needs the certificate that it is for"});
   if (http.reading_takes_token && http.token_file.empty())
     errors.push_back({"readers", "\"token\" needs a token_file; `yuragi token --new` makes one"});
   return errors;

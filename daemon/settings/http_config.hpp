@@ -16,6 +16,8 @@ struct HttpConfig {
   std::vector<std::string> proxies;  ///< addresses whose X-Forwarded-For is believed
   std::vector<std::string> origins;  ///< "https://editor.p5js.org": whose pages may read
   std::string folder;                ///< served at /site/; empty: none
+  std::string certificate;           ///< a file, PEM; empty: HTTP in the clear
+  std::string key;                   ///< of the certificate
 };
 
 const Fields<HttpConfig>& http_fields();

@@ -81,7 +81,7 @@ std::optional<http::Response> InstalledFiles::answer(const http::Request& reques
                        ? fmt::format("{} is not installed beside this program; {}", place_.what, place_.remedy)
                        : fmt::format("{} has no file {}", place_.what, name));
   }
-  http::Response response = page_response(*content_type_of(name));
+  http::Response response = page_response(*content_type_of(name), PageNeeds::kStyle);
   response.fields.emplace_back("Vary", "Accept-Encoding");
   for (const Encoding& encoding : kEncodings) {
     const File* const compressed = find(name + std::string(encoding.extension));

@@ -13,14 +13,18 @@ constexpr std::string_view kPictureAlone = "/wall";
 
 }  // namespace
 
-http::Response page_response(std::string_view content_type, bool runs_wasm) {
+http::Response page_response(std::string_view content_type, PageNeeds needs) {
+  const std::string scripts =
+      needs == PageNeeds::kStyle
+          ? ""
+          : fmt::format("script-src 'self'{}; connect-src 'self'; img-src 'self'; manifest-src 'self'; ",
+                        needs == PageNeeds::kWasm ? " 'wasm-unsafe-eval'" : "");
   return {.content_type = std::string(content_type),
           .fields = {{"Cache-Control", "no-cache"},
                      {"Content-Security-Policy",
-                      fmt::format("default-src 'none'; script-src 'self'{}; style-src 'self'; connect-src 'self'; "
-                                  "img-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; "
+                      fmt::format("default-src 'none'; style-src 'self'; {}base-uri 'none'; form-action 'none'; "
                                   "frame-ancestors 'none'",
-                                  runs_wasm ? " 'wasm-unsafe-eval'" : "")}}};
+                                  scripts)}}};
 }
 
 std::optional<http::Response> page_answer(const http::Request& request) {
@@ -28,7 +32,8 @@ std::optional<http::Response> page_answer(const http::Request& request) {
   const std::span<const PageFile> files = page_files();
   const auto file = std::ranges::find(files, std::string_view(request.path), &PageFile::path);
   if (file == files.end()) return std::nullopt;
-  http::Response response = page_response(file->content_type, file->path == kPictureAlone);
+  http::Response response =
+      page_response(file->content_type, file->path == kPictureAlone ? PageNeeds::kWasm : PageNeeds::kScript);
   response.fields.emplace_back("ETag", file->entity_tag);
   if (request.if_none_match == file->entity_tag)
     response.status = 304;

@@ -18,10 +18,17 @@ struct PageFile {
 
 std::span<const PageFile> page_files();
 
+/// What a file of the daemon's own pages needs of the browser.
+enum class PageNeeds {
+  kStyle,   ///< a page to read: its style sheet alone
+  kScript,  ///< scripts, pictures and answers of the daemon
+  kWasm,    ///< and it compiles WebAssembly, as the picture does
+};
+
 /// Returns the answer for a file of the daemon's own pages, still without its text. A browser keeps it but asks for it
-/// again each time, and may load for it only the daemon's own files and answers, and no script or style within a page's
-/// text (W3C, Content Security Policy Level 3). `runs_wasm`: it may also compile WebAssembly, as the picture does.
-http::Response page_response(std::string_view content_type, bool runs_wasm = false);
+/// again each time, and may load for it only what it needs of the daemon's own files and answers, and no script or
+/// style within a page's text (W3C, Content Security Policy Level 3).
+http::Response page_response(std::string_view content_type, PageNeeds needs);
 
 /// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nullopt: it asks for
 /// something else. The files are the same for everybody and hold no secret. Pure.

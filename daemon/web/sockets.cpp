@@ -69,7 +69,7 @@ struct Counted {
 class Client : public std::enable_shared_from_this<Client> {
  public:
   Client(http::Upgrade& upgrade, Sockets::Visitor visitor, std::shared_ptr<Feed> feed)
-      : stream_(std::move(upgrade.socket)),
+      : stream_(std::move(upgrade.bytes)),
         request_(std::move(upgrade.request)),
         peer_(std::move(upgrade.client)),
         visitor_(std::move(visitor)),
@@ -180,7 +180,7 @@ class Client : public std::enable_shared_from_this<Client> {
     if (!contain("a WebSocket", std::forward<Work>(work))) end("serving it failed, which is a fault of the daemon");
   }
 
-  tcp::socket& socket() { return stream_.next_layer(); }
+  tcp::socket& socket() { return stream_.next_layer().socket(); }
   const SocketLimits& limits() const { return feed_->settings.limits; }
   bool is_served() const { return is_open_ && !is_closing_ && !has_ended_; }
 
@@ -317,7 +317,7 @@ class Client : public std::enable_shared_from_this<Client> {
     write();
   }
 
-  websocket::stream<tcp::socket, false> stream_;
+  websocket::stream<http::ByteStream, false> stream_;
   boost::beast::http::request<boost::beast::http::string_body> request_;
   stream::Peer peer_;
   Sockets::Visitor visitor_;

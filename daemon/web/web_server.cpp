@@ -12,6 +12,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
 
+#include "daemon/http/certificate_files.hpp"
 #include "daemon/http/server.hpp"
 #include "daemon/stream/client_log.hpp"
 #include "daemon/web/cross_origin.hpp"
@@ -39,6 +40,13 @@ constexpr Nanoseconds kMaxChange = std::chrono::seconds(60);
 
 /// Reading the list of recordings, or the configuration.
 constexpr Nanoseconds kMaxArchive = std::chrono::seconds(60);
+
+constexpr auto kCertificateAgainAfter = std::chrono::hours(1);
+
+std::shared_ptr<http::CertificateFiles> certificate_of(const Settings& settings) {
+  if (settings.certificate.empty()) return nullptr;
+  return std::make_shared<http::CertificateFiles>(settings.certificate, settings.key);
+}
 
 /// The newest of what was published, decoded.
 struct News {
@@ -112,6 +120,7 @@ class Server::Thread {
  public:
   explicit Thread(Settings settings)
       : settings_(std::move(settings)),
+        certificate_(certificate_of(settings_)),
         guide_({.path = "/guide/", .what = "the guide", .remedy = "read config/guide in the sources"}, settings_.guide),
         viewer_({.path = "/wall/",
                  .what = "the viewer for browsers",
@@ -125,9 +134,10 @@ class Server::Thread {
                         .is_token = [this](const std::string& token) { return access_ && access_->is_token(token); }}),
         server_(std::make_unique<http::Server>(
             *io_, settings_.listen, http::Limits{.clients = settings_.clients},
-            [this](const http::Request& request, const http::Reply& reply) { answer(request, reply); })),
+            [this](const http::Request& request, const http::Reply& reply) { answer(request, reply); }, certificate_)),
         endpoint_(server_->local_endpoint()) {
     if (!settings_.token.is_empty()) trust(settings_.token);
+    if (certificate_) renew_certificate_later();
     thread_ = std::thread([this] { run(); });
   }
   ~Thread() {
@@ -141,6 +151,10 @@ class Server::Thread {
   Thread& operator=(const Thread&) = delete;
 
   const std::string& endpoint() const { return endpoint_; }
+  const http::CertificateFiles* certificate() const { return certificate_.get(); }
+  void renew_certificate() {
+    if (certificate_) certificate_->read_again();
+  }
   std::size_t client_count() const { return clients_ + sockets_.client_count(); }
 
   void publish_frame(stream::SharedBytes frame) {
@@ -185,6 +199,15 @@ class Server::Thread {
   }
 
  private:
+  void renew_certificate_later() {
+    certificate_timer_.expires_after(kCertificateAgainAfter);
+    certificate_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      contain("renewing the certificate", [this] { renew_certificate(); });
+      renew_certificate_later();
+    });
+  }
+
   /// Sets what is next; the thread takes it when it comes to it, so that nothing piles up if it is late.
   template <class Set>
   void hand_over(Set&& set) {
@@ -441,6 +464,7 @@ class Server::Thread {
   }
 
   Settings settings_;
+  const std::shared_ptr<http::CertificateFiles> certificate_;  ///< null: in the clear
   InstalledFiles guide_, viewer_;
   PairingsFile pairings_file_;
   std::optional<Access> access_;  ///< of the thread, as all below
@@ -450,6 +474,7 @@ class Server::Thread {
   stream::ClientLog log_{{}, [] { return MonoTime(steady_clock::now()); }};
   std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
+  asio::steady_timer certificate_timer_{*io_};
   std::optional<News> here_, elsewhere_;
   WindMemory wind_;
   std::mutex newest_mutex_;
@@ -469,6 +494,16 @@ Server::~Server() = default;
 
 std::string Server::local_endpoint() const {
   return thread_->endpoint();
+}
+std::string Server::address() const {
+  return (thread_->certificate() != nullptr ? "https://" : "http://") + thread_->endpoint();
+}
+void Server::renew_certificate() {
+  thread_->renew_certificate();
+}
+std::optional<std::string> Server::certificate_trouble() const {
+  const http::CertificateFiles* const files = thread_->certificate();
+  return files != nullptr ? files->trouble(std::chrono::system_clock::now()) : std::nullopt;
 }
 void Server::publish(stream::SharedBytes frame) {
   thread_->publish_frame(std::move(frame));

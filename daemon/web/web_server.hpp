@@ -37,6 +37,7 @@ struct Settings {
   ArchiveSettings archive = {};           ///< the daemon's files, for those who may change something (Archive)
   stream::AdmissionLimits clients = {};
   SocketLimits sockets = {};
+  std::filesystem::path certificate = {}, key = {};  ///< by TLS (http::CertificateFiles); empty: in the clear
   /// The folders of the guide as HTML and of the viewer as WebAssembly, read by the constructor.
   std::filesystem::path guide = {}, viewer = {};
   std::string software = {};  ///< "yuragi 0.2.0"
@@ -65,12 +66,20 @@ struct Settings {
 /// Thread-safe: everything but construction, close() and destruction.
 class Server final : public stream::Transport {
  public:
-  /// Listens and begins to answer. Throws FailureError (kUnavailable) if that is not possible.
+  /// Listens and begins to answer. Throws FailureError (kUnavailable) if that is not possible, or if the certificate
+  /// cannot be used.
   explicit Server(Settings settings);
   ~Server() override;
 
   /// Where it listens: "127.0.0.1:7480".
   std::string local_endpoint() const;
+  /// "https://127.0.0.1:7480"
+  std::string address() const;
+
+  /// Begins to read the certificate's files again, as it does by itself every hour.
+  void renew_certificate();
+  /// What is wrong with them, for a person; nullopt: nothing.
+  std::optional<std::string> certificate_trouble() const;
 
   /// Trusts clients with this token from now on.
   void set_token(const Secret& token);

@@ -334,6 +334,48 @@ class Http(unittest.TestCase):
             for key in table["parameters"]:
                 self.assertIn(f"<code>{key['name']}</code>", texts["keys.html"])
 
+    def policy_of(self, path, **fields):
+        """The Content-Security-Policy of an answer, by directive; nothing that it forbids stands in a page's text."""
+        request = urllib.request.Request(self.base + path, headers={name.replace("_", "-"): value for name, value in fields.items()})
+        try:
+            answer = urllib.request.urlopen(request, timeout=HANG_S)
+        except urllib.error.HTTPError as refusal:
+            answer = refusal
+        with answer:
+            text = answer.read().decode()
+            policy = dict(directive.strip().partition(" ")[::2] for directive in answer.headers["Content-Security-Policy"].split(";"))
+            if answer.headers["Content-Type"].startswith("text/html"):
+                self.assertNotRegex(text, r"(?i)<script(?![^>]*\ssrc=)|\son[a-z]+=|javascript:", path)
+                if "'unsafe-inline'" not in policy.get("style-src", ""):
+                    self.assertNotRegex(text, r"(?i)<style|<[^>]*\sstyle=", path)
+            self.assertEqual(answer.headers["X-Content-Type-Options"], "nosniff", path)
+            return policy
+
+    def test_each_page_has_a_policy_as_small_as_it_can_be(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        with open(os.path.join(folder, "index.html"), "w", encoding="ascii") as page:
+            page.write("<!doctype html><title>own</title>")
+        self.start_daemon('[[sensor]]\ndriver = "synthetic"\n', f'folder = "{folder}"\n')
+        own = {"default-src": "'none'", "script-src": "'self'", "style-src": "'self'", "connect-src": "'self'", "img-src": "'self'",
+               "manifest-src": "'self'", "base-uri": "'none'", "form-action": "'none'", "frame-ancestors": "'none'"}
+        guide = {"/guide/" + name for name in re.findall(r'href="([a-z-]+\.html)', self.ask("/guide/")[1])}
+        self.assertGreater(len(guide), 10)
+        to_read = {name: value for name, value in own.items() if name.split("-")[0] not in ("script", "connect", "img", "manifest")}
+        for path in {"/guide/", *guide}:
+            self.assertEqual(self.policy_of(path), to_read, path)
+        for path in ("/", "/page.js", "/page.css"):
+            self.assertEqual(self.policy_of(path), own, path)
+        self.assertEqual(self.policy_of("/wall"), {**own, "script-src": "'self' 'wasm-unsafe-eval'"})
+        self.assertEqual(self.policy_of("/wall.js"), own)
+        nothing = {"default-src": "'none'", "frame-ancestors": "'none'"}
+        for path in ("/healthz", "/metrics", "/api/v1/status", "/api/v1/openapi.json", "/absent", "/api/v1/absent", "/guide/absent.html", "/site/absent.html"):
+            self.assertEqual(self.policy_of(path), nothing, path)
+        self.assertEqual(self.policy_of("/", Host="evil.example"), nothing)
+        self.assertEqual(self.policy_of("/api/v1/log", X_Forwarded_For="192.0.2.7"), nothing)
+        site = self.policy_of("/site/")
+        self.assertEqual((site["default-src"], site["script-src"], site["base-uri"], site["form-action"], site["frame-ancestors"]),
+                         ("'self'", "'self' 'wasm-unsafe-eval'", "'none'", "'none'", "'self'"))
+
     def open_web_sockets(self, count):
         """The status codes by which `count` WebSockets are answered that all connect, then ask, and then read."""
         host, port = self.base.removeprefix("http://").split(":")

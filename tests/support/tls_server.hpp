@@ -53,6 +53,14 @@ class SelfSignedCertificate {
     std::ofstream(file).write(text, size);
   }
 
+  void save_key(const std::filesystem::path& file) const {
+    const std::unique_ptr<BIO, decltype(&BIO_free)> memory(BIO_new(BIO_s_mem()), &BIO_free);
+    PEM_write_bio_PrivateKey(memory.get(), key_.get(), nullptr, nullptr, 0, nullptr, nullptr);
+    char* text = nullptr;
+    const long size = BIO_get_mem_data(memory.get(), &text);
+    std::ofstream(file).write(text, size);
+  }
+
   X509* certificate() const { return certificate_.get(); }
   EVP_PKEY* key() const { return key_.get(); }
 

@@ -280,6 +280,10 @@ std::vector<PathFacts> named_paths(const Rehearsal& rehearsal) {
   const fs::path folder = rehearsal.config_file.parent_path();
   if (!rehearsal.config_file.empty()) add("configuration", rehearsal.config_file, PathUse::kRead);
   if (!config.http.token_file.empty()) add("[http] token_file", config.http.token_file, PathUse::kReadSecret);
+  if (!config.http.certificate.empty()) {
+    add("[http] certificate", config.http.certificate, PathUse::kRead);
+    add("[http] key", config.http.key, PathUse::kReadSecret);
+  }
   if (config.recording.file) {
     add("[recording] file", config.recording.file->parent_path(), PathUse::kWriteFolder);
     add("[recording] file", *config.recording.file, PathUse::kWriteFile, true);

@@ -116,6 +116,7 @@ const std::map<std::string, std::string>& lines_of_choosy_keys() {
       {"http.proxies", "proxies = '127.0.0.1'"},
       {"http.origins", "origins = 'http://a'"},
       {"http.readers", "token_file = 'a'\nreaders = 'token'"},
+      {"http.key", "certificate = 'a'\nkey = 'b'"},
       {"wind.site_octaves", "site_octaves = '1 2'"},
       {"shaping.site_strong", "site_median = 3.0\nsite_strong = 4.0"},
       {"shaping.hours", "hours = '10:00-18:00'"},

@@ -29,10 +29,16 @@ TEST(Page, EachFileIsServed_WithItsTypeAndAStrictPolicy) {
     EXPECT_EQ(response->content_type, file.content_type);
     EXPECT_FALSE(file.text.empty()) << file.path;
     EXPECT_THAT(response->fields, Contains(Pair("Cache-Control", "no-cache")));
-    EXPECT_THAT(response->fields, Contains(Pair("Content-Security-Policy", HasSubstr("default-src 'none'"))));
-    EXPECT_THAT(response->fields, Not(Contains(Pair("Content-Security-Policy", HasSubstr("unsafe")))));
+    const bool compiles = file.path == "/wall";  // the picture, which is WebAssembly
+    EXPECT_THAT(response->fields,
+                Contains(Pair("Content-Security-Policy",
+                              std::string("default-src 'none'; style-src 'self'; script-src 'self'") +
+                                  (compiles ? " 'wasm-unsafe-eval'" : "") +
+                                  "; connect-src 'self'; img-src 'self'; manifest-src 'self'; base-uri 'none'; "
+                                  "form-action 'none'; frame-ancestors 'none'")));
   }
-  EXPECT_EQ(paths, (std::set<std::string_view>{"/", "/icon.svg", "/manifest.webmanifest", "/page.css", "/page.js"}));
+  EXPECT_EQ(paths, (std::set<std::string_view>{"/", "/icon.svg", "/manifest.webmanifest", "/page.css", "/page.js",
+                                               "/wall", "/wall.css", "/wall.js"}));
 }
 TEST(Page, AFileThatTheBrowserHas_IsNotSentAgain) {
   for (const PageFile& file : page_files()) {
@@ -51,11 +57,13 @@ TEST(Page, WhatIsNoneOfItsFiles_IsLeftToOthers) {
 }
 /// The policy forbids both; the browser would say so on its console, and leave them out.
 TEST(Page, HasNoScriptOrStyleWithinItsText) {
-  const auto page = page_answer(request_for("/"));
-  ASSERT_TRUE(page);
-  EXPECT_THAT(page->body, Not(HasSubstr("<style")));
-  EXPECT_THAT(page->body, Not(HasSubstr("style=")));
-  EXPECT_THAT(page->body, Not(HasSubstr("<script>")));
+  for (const char* const path : {"/", "/wall"}) {
+    const auto page = page_answer(request_for(path));
+    ASSERT_TRUE(page) << path;
+    EXPECT_THAT(page->body, Not(HasSubstr("<style"))) << path;
+    EXPECT_THAT(page->body, Not(HasSubstr("style="))) << path;
+    EXPECT_THAT(page->body, Not(HasSubstr("<script>"))) << path;
+  }
 }
 
 }  // namespace

@@ -68,6 +68,11 @@ class Client {
          fields + "\r\n" + body);
     return answer();
   }
+  /// The first byte behind the last answer.
+  char next_byte() {
+    if (said_.empty()) boost::asio::read(socket_, boost::asio::dynamic_buffer(said_), boost::asio::transfer_exactly(1));
+    return said_.front();
+  }
   /// Has the server closed the connection? Waits until it has.
   bool is_closed() {
     char one = 0;
@@ -357,6 +362,21 @@ TEST_F(PairedBrowserTest, ASessionAndAUsedCodeOutliveARestart_AndARevocationDoes
   server.reset();
   server = start();
   EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 401"));
+}
+TEST_F(PairedBrowserTest, ARevocationEndsTheWebSocketsOfItsSession) {
+  const auto server = start();
+  const std::string cookie = cookie_in(Client(server->local_endpoint()).post("/api/v1/pair", code_, kJson));
+  const std::string upgrade =
+      "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+      "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+  Client page(server->local_endpoint());
+  EXPECT_THAT(page.get("/ws", upgrade + cookie), StartsWith("HTTP/1.1 101"));
+  Client owner(server->local_endpoint());
+  const std::string list = owner.get("/api/v1/sessions", kBearer);
+  const std::string id = list.substr(list.find("\"id\": \"") + 7, Access::kSessionIdCharacters);
+  EXPECT_THAT(owner.post("/api/v1/sessions", R"({"revoke":")" + id + "\"}", kJson + kBearer),
+              StartsWith("HTTP/1.1 200"));
+  EXPECT_EQ(page.next_byte(), '\x88') << "a frame that closes (RFC 6455, 5.5.1)";
 }
 TEST_F(PairedBrowserTest, ARevocationThatCannotBeSavedHoldsUntilTheRestart_AndIsReported) {
   file_ = folder_.path() / "nowhere" / "pairings.json";
