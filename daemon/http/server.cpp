@@ -107,6 +107,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void begin() {
     if (!stream_.is_tls()) return read();
+    error_code ignored;
+    stream_.socket().set_option(tcp::no_delay(true), ignored);  // an answer takes several writes
     stream_.tcp().expires_after(limits_.time);
     stream_.tls().async_handshake(asio::ssl::stream_base::server, [self = shared_from_this()](const error_code& error) {
       self->go_on([&] { self->finish_handshake(error); });
