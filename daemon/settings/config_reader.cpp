@@ -140,6 +140,8 @@ class ConfigReader {
   /// The file of the page: adds its sensors.
   void add_page(const toml::table& root, Config& config) {
     for (const auto& [key, node] : root) {
+      if (key.str() == "sensor" && !is_list(node))
+        mistake(key.source(), "sensor", "is no list; write its heading as [[sensor]]");
       if (key.str() != "sensor")
         mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]]");
     }
