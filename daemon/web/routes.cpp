@@ -304,8 +304,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/configuration", archived<What::kConfiguration>, true},
 
     Route{"GET", "/api/v1/drivers", archived<What::kDrivers>, true},
-    Route{"GET", kSensors, archived<What::kSensors>, true},
-    Route{"POST", kSensors, add_sensor, true},
+    Route{"GET", kSensors, archived<What::kSensors>},
+    Route{"POST", kSensors, add_sensor},
     Route{"POST", "/api/v1/sensors/find", job<What::kFindSensors>, true},
     Route{"POST", "/api/v1/sensors/try", try_sensor, true},
     Route{"POST", "/api/v1/sensors/undo", job<What::kUndoSensors>, true},
