@@ -618,11 +618,11 @@ token_file = "${path.join(folder, "token-setup")}"
   await page.getByRole("button", { name: "Pair", exact: true }).click();
   await page.waitForSelector("#setup[open]");
   await page.route("**/api/v1/sensors/find", (route) => route.fulfill({ status: 202, json: { id: "0", kind: "find", recording: null, state: "done", run_for_s: 1, message: "", file: null,
-    result: [{ driver: "nmea", device: HOSTILE, settings: `transport = "tcp"\nhost = "192.0.2.1"\n`, trouble: HOSTILE, remedy: null }] } }));
+    result: [{ driver: "nmea", device: HOSTILE, settings: `transport = "tcp"\nhost = "192.0.2.1"  # "here"\nport = 4800  # or 9600\n`, trouble: HOSTILE, remedy: null }] } }));
   await page.click("#setup-find");
   await page.locator("#setup-found button").click();
   assert.equal(await page.inputValue("#setup-driver"), "nmea");
-  assert.equal(await page.inputValue("#setup-host"), "192.0.2.1");
+  assert.deepEqual([await page.inputValue("#setup-transport"), await page.inputValue("#setup-host"), await page.inputValue("#setup-port")], ["tcp", "192.0.2.1", "4800"]);
   assert.equal(await page.isVisible("#setup-file"), false, "a file is not for the page");
   await page.fill("#setup-host", "127.0.0.1");
   await page.fill("#setup-port", station.answer[1]);

@@ -52,13 +52,11 @@ function key_of(key: DriverKey): Key {
   };
 }
 
-/** The lines `key = value` of a found device, as far as they are single values. */
+/** The lines `key = value  # comment` of a found device: texts without their quotes, and numbers. */
 function values_in(settings: string): [string, string][] {
   return settings.split("\n").flatMap((line) => {
-    const found = /^([a-z0-9_]+) = (.*)$/.exec(line.trim());
-    const [, key, value] = found ?? [];
-    if (key === undefined || value === undefined) return [];
-    return [[key, /^".*"$/.test(value) ? value.slice(1, -1).replace(/\\(["\\])/g, "$1") : value]];
+    const [, key, text, plain] = /^([a-z0-9_]+) = (?:"((?:[^"\\]|\\.)*)"|([^#"]+))/.exec(line) ?? [];
+    return key === undefined ? [] : [[key, text?.replace(/\\(["\\])/g, "$1") ?? plain?.trim() ?? ""]];
   });
 }
 

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/settings/reload_plan.hpp"
+#include "daemon/settings/secret_exposure.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::settings {
@@ -190,6 +191,14 @@ TEST_F(PageFileOfAnInstallation, IsLeftOutIfItIsDamaged_AndThatIsSaid) {
   std::filesystem::remove(page_);
   std::filesystem::create_directory(page_);
   EXPECT_THAT(load_installation(config_).page_trouble, HasSubstr("a.toml.page.toml:1:1: file:"));
+}
+
+/// It stands in a file of its owner alone.
+TEST_F(PageFileOfAnInstallation, APasswordInItDoesNotMakeTheConfigurationASecret) {
+  write(page_, "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"wind\"\npassword = \"correct horse\"\n");
+  const Config config = load_installation(config_);
+  ASSERT_EQ(config.page_trouble, "");
+  EXPECT_THAT(exposed_secrets(config, config_), IsEmpty());
 }
 
 TEST_F(PageFileOfAnInstallation, AMistakeOfTheConfigurationIsNotItsFault) {
