@@ -15,6 +15,7 @@
 #include "daemon/service/config_check.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/config_file.hpp"
+#include "daemon/settings/page_file.hpp"
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/standard_output.hpp"
@@ -121,6 +122,7 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
 
 void print_summary(const settings::Config& config, const std::filesystem::path& file) {
   fmt::print("{}: no errors\n", file.string());
+  if (!config.page_file.empty()) fmt::print("{}: no errors, the last of the sensors\n", config.page_file);
   for (const settings::SensorConfig& sensor : config.sensors) {
     fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
                settings::place_text(sensor.blend), settings::gust_length_m(config.wind, sensor),
@@ -177,9 +179,13 @@ void rehearse(const settings::Config& config, const CheckOptions& options) {
 }
 
 void check_config(const CheckOptions& options) {
-  const settings::Config config = settings::load_config(options.file);
+  const settings::Config config = settings::load_installation(options.file);
   service::check(config);
   if (!config.http.certificate.empty()) http::CertificateFiles(config.http.certificate, config.http.key);
+  if (!config.page_trouble.empty()) {
+    fmt::print(stderr, "warning: what the page has set up is left out, and the configuration alone is read:\n{}\n",
+               config.page_trouble);
+  }
   if (options.as_service) return rehearse(config, options);
   for (const std::string& warning : settings::exposed_secrets(config, options.file)) {
     fmt::print(stderr, "warning: {}\n", warning);

@@ -6,6 +6,7 @@
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/service/config_check.hpp"
 #include "daemon/settings/own_token.hpp"
+#include "daemon/settings/page_file.hpp"
 
 namespace yuragi::daemon::commands {
 
@@ -33,7 +34,7 @@ tools::doctor::Examination examination_of(const std::optional<std::filesystem::p
   examination.config_file = installed_config(given);
   try {
     settings::Config config =
-        examination.config_file ? settings::load_config(*examination.config_file) : settings::default_config();
+        examination.config_file ? settings::load_installation(*examination.config_file) : settings::default_config();
     service::check(config);
     if (address) config = settings::listening_at(std::move(config), *address);
     examination.config = std::move(config);

@@ -1,7 +1,17 @@
 // `yuragi run` and `yuragi record`: the daemon, with and without scenes.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
 
+#include <linux/close_range.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/run_options.hpp"
@@ -23,12 +33,29 @@ settings::Config config_with_warnings(const RunOptions& options) {
       spdlog::warn("{}", warning);
     }
   }
+  if (!config.page_trouble.empty()) {
+    spdlog::warn("what the page has set up is left out, and the configuration alone is read: {}", config.page_trouble);
+  }
   return config;
 }
 
+/// Puts this program with its arguments in the place of this process: of a service it stays the main process, and no
+/// service manager is needed. Throws std::system_error.
+[[noreturn]] void start_again() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::string words((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  std::vector<char*> arguments;
+  for (std::size_t at = 0; at < words.size(); at += std::strlen(&words[at]) + 1) arguments.push_back(&words[at]);
+  arguments.push_back(nullptr);
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);  // what a thread that hangs has left open
+  std::fflush(nullptr);
+  execv("/proc/self/exe", arguments.data());
+  throw std::system_error(errno, std::generic_category(), "the daemon cannot be started again");
+}
+
 /// Runs the daemon, whose configuration can be read again if it is a file. `record`: the recording in place of the
-/// configured one.
-void run_daemon(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
+/// configured one. Returns true if it is to be started again.
+bool run_once(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
   service::hold_back_hangups();
   const service::DaemonLog log(options.verbose);
   const settings::Config config = config_with_warnings(options);
@@ -37,6 +64,7 @@ void run_daemon(const RunOptions& options, const std::optional<std::filesystem::
                            .duration_s = options.duration_s,
                            .with_scenes = with_scenes,
                            .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); },
+                           .can_be_restarted = true,
                            .log_tail = log.tail(),
                            .fault_counter = service::DaemonLog::fault_counter()};
   if (options.config_file) {
@@ -47,7 +75,11 @@ void run_daemon(const RunOptions& options, const std::optional<std::filesystem::
       return tools::doctor::next_start_warnings(running, next, file);
     };
   }
-  service::Service(config, service).run();
+  return service::Service(config, service).run();
+}
+
+void run_daemon(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
+  if (run_once(options, record, with_scenes)) start_again();
 }
 
 void add_run(CLI::App& app) {

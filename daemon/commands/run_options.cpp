@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/settings/page_file.hpp"
 #include "engine/base/duration.hpp"
 
 namespace yuragi::daemon::commands {
@@ -46,7 +47,7 @@ CLI::Validator duration_in_seconds() {
 }
 
 settings::Config RunOptions::config() const {
-  settings::Config config = config_file ? settings::load_config(*config_file) : settings::default_config();
+  settings::Config config = config_file ? settings::load_installation(*config_file) : settings::default_config();
   return address ? settings::listening_at(std::move(config), *address) : config;
 }
 

@@ -13,6 +13,7 @@ void add_sensors(CLI::App& app) {
   add_sensors_probe(*sensors);
   add_sensors_describe(*sensors);
   add_sensors_watch(*sensors);
+  add_sensors_try(*sensors);
 }
 
 }  // namespace

@@ -9,5 +9,6 @@ void add_sensors_list(CLI::App& sensors);
 void add_sensors_probe(CLI::App& sensors);
 void add_sensors_describe(CLI::App& sensors);
 void add_sensors_watch(CLI::App& sensors);
+void add_sensors_try(CLI::App& sensors);
 
 }  // namespace yuragi::daemon::commands

@@ -1,5 +1,7 @@
 // `yuragi sensors list`: lists the devices that are plugged in, announced on an MQTT broker, or found in the local
 // networks, and how to configure them.
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -26,6 +28,7 @@ struct ListOptions {
   std::optional<double> network_s;
   std::string ask;
   bool uses_tls = false;
+  bool all = false;
   bool as_json = false;
 };
 
@@ -101,6 +104,18 @@ void list_network(const ListOptions& options) {
       *options.network_s);
 }
 
+/// What is plugged in, and then what is in the networks, within a short time.
+void list_all(bool as_json) {
+  constexpr double kShortSearch_s = 5.0;
+  const auto drivers = drivers::sensor::driver_table();
+  std::vector<tools::sensors::DeviceFinding> findings = tools::sensors::find_devices(drivers);
+  drivers::sensor::NetworkSearch search;
+  search.duration = from_seconds(kShortSearch_s);
+  std::ranges::move(tools::sensors::find_devices_in_network(drivers, search), std::back_inserter(findings));
+  if (as_json) return print_json(tools::sensors::devices_json(findings));
+  fmt::print("{}", tools::sensors::device_list(findings, drivers));
+}
+
 }  // namespace
 
 void add_sensors_list(CLI::App& sensors) {
@@ -141,8 +156,12 @@ void add_sensors_list(CLI::App& sensors) {
           ->check(CLI::Range(0.1, 3600.0))
           ->excludes(broker);
   command->add_option("--ask", options->ask, "ask only this IPv4 address")->needs(network)->check(CLI::ValidIPV4);
+  command->add_flag("--all", options->all, "list what is plugged in, and search the local networks for 5 s")
+      ->excludes(broker)
+      ->excludes(network);
   add_json(*command, options->as_json);
   command->callback([options] {
+    if (options->all) return list_all(options->as_json);
     if (options->network_s) return list_network(*options);
     options->broker.empty() ? list_plugged_in(options->as_json) : list_announced(*options);
   });

@@ -41,6 +41,7 @@
 #include "daemon/service/reload_report.hpp"
 #include "daemon/service/service_manager.hpp"
 #include "daemon/settings/config_file.hpp"
+#include "daemon/settings/page_file.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/state/attention.hpp"
 #include "daemon/stream/tcp_stream.hpp"
@@ -62,6 +63,8 @@ namespace asio = boost::asio;
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 /// The interval at which what could not be opened at the start is tried again.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
+/// Until the answer to the request for a restart has been sent.
+constexpr auto kRestartAfter = std::chrono::milliseconds(500);
 
 static_assert(settings::kMaxSensors + 1 <= wire::kMaxSensors && settings::kMaxScenes <= wire::kMaxScenes);
 
@@ -130,6 +133,7 @@ class Service::Io {
         rate_hz_(config.animation.rate_hz),
         http_(config.http),
         least_free_bytes_(config.recording.least_free_bytes),
+        page_file_trouble_(config.page_trouble),
         gusts_(sensing::make_gust_noise(config)),
         animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
         director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
@@ -178,7 +182,7 @@ class Service::Io {
     }
   }
 
-  void run() {
+  bool run() {
     if (options_.lead_s > 0.0) {
       spdlog::info("warming up: the scenes run through the {:g} s before the beginning", options_.lead_s);
       lead_in(
@@ -222,6 +226,7 @@ class Service::Io {
     if (recorder_) recorder_->close();
     log_summary();
     if (failure_) throw std::runtime_error(*failure_);
+    return is_restart_;
   }
 
  private:
@@ -267,7 +272,8 @@ class Service::Io {
                            .archive = {.recording = options_.record.value_or(std::filesystem::path()),
                                        .least_free_bytes = least_free_bytes_,
                                        .configuration = options_.config_file,
-                                       .stream = stream_.local_endpoint()},
+                                       .stream = stream_.local_endpoint(),
+                                       .page = settings::page_file(options_.config_file)},
                            .certificate = http_.certificate,
                            .key = http_.key,
                            .guide = web::installed_folder("guide"),
@@ -284,6 +290,9 @@ class Service::Io {
     };
     if (history_) {
       settings.history = [this](unsigned hours, const history::Reader::Reply& reply) { history_->ask(hours, reply); };
+    }
+    if (options_.can_be_restarted && !options_.config_file.empty()) {
+      settings.archive.restart = [this] { asio::post(io_, [this] { restart_soon(); }); };
     }
     settings.log = options_.log_tail;
     settings.faults = options_.fault_counter;
@@ -440,6 +449,7 @@ class Service::Io {
   /// All at once, between two steps of the wind.
   void apply(const settings::ReloadPlan& plan) {
     const settings::Config& next = plan.next;
+    page_file_trouble_ = next.page_trouble;
     hub_.change(next);
     if (plan.changes_shaping) shaper_.change(next.shaping);
     cameras_ = cameras_of(next);
@@ -656,6 +666,8 @@ class Service::Io {
     status.troubles = troubles();
     if (auto trouble = web_ ? web_->certificate_trouble() : std::nullopt)
       status.troubles.push_back(std::move(*trouble));
+    if (!page_file_trouble_.empty())
+      status.troubles.push_back("what the page has set up is left out: " + page_file_trouble_);
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
@@ -692,9 +704,20 @@ class Service::Io {
     end("the animation has failed");
   }
 
+  /// For what the page has set up, once its answer is on its way.
+  void restart_soon() {
+    restart_timer_.expires_after(kRestartAfter);
+    restart_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      is_restart_ = true;
+      manager_.report_restarting();
+      end("the page has changed the sensors: it is started again");
+    });
+  }
+
   void end(const char* why) {
     spdlog::info("ending: {}", why);
-    manager_.report_stopping(why);
+    if (!is_restart_) manager_.report_stopping(why);
     if (loop_) loop_->stop();
     stream_.close();
     if (web_) web_->close();
@@ -702,6 +725,7 @@ class Service::Io {
     signals_.cancel();
     hangups_.signals.cancel();
     end_timer_.cancel();
+    restart_timer_.cancel();
     wind_timer_.cancel();
     status_timer_.cancel();
     again_timer_.cancel();
@@ -717,7 +741,7 @@ class Service::Io {
   asio::signal_set signals_{io_};
   Hangups hangups_{io_};
   Terminal terminal_;
-  asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_}, again_timer_{io_};
+  asio::steady_timer end_timer_{io_}, restart_timer_{io_}, wind_timer_{io_}, status_timer_{io_}, again_timer_{io_};
   asio::steady_timer::time_point next_wind_;
   animation::DurationHistogram io_lateness_;  ///< of each step of the wind
   animation::RecentLateness recent_io_lateness_{io_lateness_};
@@ -725,10 +749,12 @@ class Service::Io {
   animation::RecentWindow<std::uint64_t> skipped_before_;
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
+  bool is_restart_ = false;             ///< it ends to be started again
   std::optional<std::string> failure_;  ///< why it ends although nobody asked it to
 
   settings::HttpConfig http_;
   std::uint64_t least_free_bytes_;
+  std::string page_file_trouble_;  ///< empty: none
   const bool takes_token_ = !http_.token_file.empty();
   Secret token_;                              ///< empty: there is none, or it cannot be read
   std::string token_trouble_, page_trouble_;  ///< empty: none
@@ -804,8 +830,8 @@ void Service::Io::log_summary() const {
 Service::Service(const settings::Config& config, const Options& options)
     : io_(std::make_unique<Io>(sensing::with_recorded_sources(config), options)) {}
 Service::~Service() = default;
-void Service::run() {
-  io_->run();
+bool Service::run() {
+  return io_->run();
 }
 
 }  // namespace yuragi::daemon::service

@@ -31,6 +31,8 @@ struct Options {
   std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
   /// Called with [log] level when it has changed.
   std::function<void(settings::LogLevel)> set_log_level = {};
+  /// The daemon ends for a restart that the page asks for: run() returns true. false: the page may not ask for one.
+  bool can_be_restarted = false;
   /// The last lines of the log. Thread-safe. Empty: there is none.
   web::LogTail log_tail = {};
   /// How many exceptions were contained. Empty: they are not counted.
@@ -54,8 +56,9 @@ class Service {
 
   /// Runs until SIGINT, SIGTERM, a terminal that is closed, or until the options end it; SIGHUP reads the configuration
   /// again (Reload). Returns in under a second after that. Throws std::runtime_error, with the recording closed, if
-  /// the animation has failed by an error of this program.
-  void run();
+  /// the animation has failed by an error of this program. Returns true if it is to be started again, as
+  /// Options::can_be_restarted allows.
+  bool run();
 
  private:
   class Io;  // keeps Asio, which is slow to compile, in one file

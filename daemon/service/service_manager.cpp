@@ -29,6 +29,10 @@ void Manager::report_status(const wire::Sensors& status) {
   if (line != status_ && socket_.send("STATUS=" + line)) status_ = line;
 }
 
+void Manager::report_restarting() {
+  socket_.send("RELOADING=1\nWATCHDOG=1\nSTATUS=is started again");
+}
+
 void Manager::report_stopping(const std::string& why) {
   socket_.send("STOPPING=1\nSTATUS=ending: " + why);
 }

@@ -23,6 +23,9 @@ class Manager {
   /// RELOADING=1, which the next READY=1 ends.
   void report_reloading();
 
+  /// RELOADING=1: the process goes on as another program, whose READY=1 ends it.
+  void report_restarting();
+
   /// STATUS=: one plain line, of the status that clients get. Sent if it differs from the last line.
   void report_status(const wire::Sensors& status);
 

@@ -70,6 +70,9 @@ struct Config {
   feeds::Config feeds;                 ///< made of them
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC if no camera has a time
 
+  std::string page_file = {};     ///< whose sensors are the last ones (load_installation()); empty: none
+  std::string page_trouble = {};  ///< why that file is left out, each line as in a ConfigError; empty: it is not
+
   /// The values of config_tables(), from which the members above were made. Only for writing, comparing and changing
   /// them.
   TablesByName by_name;
@@ -102,6 +105,11 @@ Config listening_at(Config config, const std::string& address);
 /// Reads a configuration, but not the pictures that it names. `source_name` is the file name in error messages. Throws
 /// ConfigError with every error found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
+
+/// The configuration with the sensors of the page's file (page_file.hpp), which has nothing but [[sensor]], with names
+/// of their own and keys that the page may set. The synthetic sensor of a file without any is replaced. Throws
+/// ConfigError with every error found in this text.
+Config with_page(const Config& config, std::string_view toml_text, const std::string& source_name);
 
 /// The largest configuration that is read, in bytes: many times what any installation needs.
 inline constexpr std::size_t kMaxConfig_bytes = 1 << 20;

@@ -15,6 +15,7 @@
 
 #include "daemon/pictures/picture_file.hpp"
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/page_file.hpp"
 #include "engine/output/output_tables.hpp"
 #include "engine/tables/parse_toml.hpp"
 #include "engine/tables/toml_values.hpp"
@@ -115,13 +116,7 @@ class ConfigReader {
     check_top_level(root);
     read_tables<Config>(root, "", config_tables(), config);
     if (config.wind.fallback) config.wind.fallback->origin = place(root["wind"]["fallback_recording"].node()->source());
-    for_each_entry(root, "sensor", "driver", kMaxSensors, drivers::sensor::driver_table(),
-                   [&](SensorConfig sensor, const toml::table& entry) {
-                     sensor.origin = place(entry.source());
-                     read_tables<SensorConfig>(entry, "sensor.", sensor_tables(), sensor);
-                     if (!config.wind.default_length_m) set_gust_length(sensor);
-                     config.sensors.push_back(std::move(sensor));
-                   });
+    read_sensors(root, config, [](const SensorConfig&, const toml::table&) {});
     for_each_entry(root, "scene", "kind", kMaxScenes, scenes::scene_table(),
                    [&](SceneConfig scene, const toml::table& entry) {
                      scene.cloth = read_cloth(entry, scene.values);
@@ -142,7 +137,64 @@ class ConfigReader {
     return config;
   }
 
+  /// The file of the page: adds its sensors.
+  void add_page(const toml::table& root, Config& config) {
+    for (const auto& [key, node] : root) {
+      if (key.str() == "sensor" && !is_list(node))
+        mistake(key.source(), "sensor", "is no list; write its heading as [[sensor]]");
+      if (key.str() != "sensor")
+        mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]]");
+    }
+    if (std::ranges::all_of(config.sensors, [](const SensorConfig& sensor) { return sensor.origin.empty(); }) &&
+        has_sensors(root))
+      config.sensors.clear();  // the synthetic one, of a file without any
+    std::set<std::string> names;
+    for (const SensorConfig& sensor : config.sensors) names.insert(sensor.name);
+    read_sensors(root, config, [&](const SensorConfig& sensor, const toml::table& entry) {
+      if (!names.insert(sensor.name).second)
+        mistake_in(
+            entry, "sensor.",
+            {std::string(kNameKey), fmt::format("\"{}\" is in use; give this sensor another name", sensor.name)});
+      refuse_what_the_page_may_not(sensor, entry);
+    });
+    if (config.sensors.size() > kMaxSensors)
+      mistake(root.source(), "sensor",
+              fmt::format("too many with those of the configuration (maximum {})", kMaxSensors));
+    config.feeds.osc_query.sensors = services_of(config.sensors);
+    if (!mistakes_.empty()) throw ConfigError(mistakes_.text());
+  }
+
  private:
+  static bool has_sensors(const toml::table& root) {
+    const toml::node* const node = root.get("sensor");
+    return node != nullptr && node->is_array_of_tables() && !node->as_array()->empty();
+  }
+
+  /// Every [[sensor]]; `check` gets each, with its entry.
+  template <class Check>
+  void read_sensors(const toml::table& root, Config& config, const Check& check) {
+    for_each_entry(root, "sensor", "driver", kMaxSensors, drivers::sensor::driver_table(),
+                   [&](SensorConfig sensor, const toml::table& entry) {
+                     sensor.origin = place(entry.source());
+                     read_tables<SensorConfig>(entry, "sensor.", sensor_tables(), sensor);
+                     if (!config.wind.default_length_m) set_gust_length(sensor);
+                     check(sensor, entry);
+                     config.sensors.push_back(std::move(sensor));
+                   });
+  }
+
+  void refuse_what_the_page_may_not(const SensorConfig& sensor, const toml::table& entry) {
+    if (sensor.driver->plays_recordings)
+      mistake_in(entry, "sensor.",
+                 {"driver",
+                  "\"" + std::string(sensor.driver->name) + "\" is not for the page: write it into the configuration"});
+    for (const Parameter& key : sensor.driver->parameters) {
+      if (!entry.contains(key.name) || !sensor.values.has(key.name)) continue;
+      if (auto refusal = page_refusal(*sensor.driver, key, sensor.values.all().at(std::string(key.name))))
+        mistake_in(entry, "sensor.", {std::string(key.name), std::move(*refusal)});
+    }
+  }
+
   void mistake(const toml::source_region& where, const std::string& key, const std::string& what) {
     mistakes_.add(where, key, what);
   }
@@ -403,18 +455,20 @@ class ConfigReader {
   std::optional<std::filesystem::path> folder_;
 };
 
-Config parse(std::string_view toml_text, const std::string& source_name,
-             const std::optional<std::filesystem::path>& folder) {
-  toml::table root;
+toml::table parsed(std::string_view toml_text, const std::string& source_name) {
   try {
-    root = tables::parse_toml(toml_text, source_name);
+    return tables::parse_toml(toml_text, source_name);
   } catch (const toml::parse_error& error) {
     std::ostringstream line;
     line << source_name << ':' << error.source().begin.line << ':' << error.source().begin.column
          << ": TOML: " << error.description();
     throw ConfigError(line.str());
   }
-  Config config = ConfigReader(source_name, folder).read(root);
+}
+
+Config parse(std::string_view toml_text, const std::string& source_name,
+             const std::optional<std::filesystem::path>& folder) {
+  Config config = ConfigReader(source_name, folder).read(parsed(toml_text, source_name));
   if (config.sensors.empty()) config.sensors.push_back(synthetic_sensor());
   return config;
 }
@@ -427,6 +481,12 @@ Config default_config() {
 
 Config parse_config(std::string_view toml_text, const std::string& source_name) {
   return parse(toml_text, source_name, std::nullopt);
+}
+
+Config with_page(const Config& config, std::string_view toml_text, const std::string& source_name) {
+  Config both = config;
+  ConfigReader(source_name, std::nullopt).add_page(parsed(toml_text, source_name), both);
+  return both;
 }
 
 Config load_config(const std::filesystem::path& file) {

@@ -206,6 +206,11 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   comparison.merge_tables<Config>("", "", config_tables(), next, wanted);
   plan.changes_shaping = next.by_name.at("shaping").all() != running.by_name.at("shaping").all();
 
+  if (running.page_trouble != wanted.page_trouble)
+    comparison.note(KeyChange::kAtOnce,
+                    wanted.page_trouble.empty() ? "the page's file is read" : "the page's file is left out");
+  next.page_trouble = wanted.page_trouble;
+  next.page_file = wanted.page_file;
   for (SensorConfig& sensor : next.sensors) {
     const auto found = std::ranges::find(wanted.sensors, sensor.name, &SensorConfig::name);
     if (found != wanted.sensors.end()) compare_sensor(comparison, sensor, *found);

@@ -1,6 +1,7 @@
 #include "daemon/settings/secret_exposure.hpp"
 
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -19,7 +20,12 @@ bool is_read_by_everybody(const std::filesystem::path& file) {
 
 std::vector<std::string> exposed_secrets(const Config& config, const std::filesystem::path& file) {
   std::vector<std::string> warnings;
-  for_each_value(config, [&](const std::string& where, const Parameter& parameter, const ParameterValue& value) {
+  Config written = config;  // what is in this file: that of the page is its owner's alone
+  if (!config.page_file.empty()) {
+    std::erase_if(written.sensors,
+                  [&](const SensorConfig& sensor) { return sensor.origin.starts_with(config.page_file + ":"); });
+  }
+  for_each_value(written, [&](const std::string& where, const Parameter& parameter, const ParameterValue& value) {
     const auto* secret = std::get_if<Secret>(&value);
     const auto* text = std::get_if<std::string>(&value);
     std::filesystem::path exposed;

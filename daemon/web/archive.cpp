@@ -23,6 +23,7 @@
 #include "daemon/web/niced_child.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/recording_list.hpp"
+#include "daemon/web/sensor_setup.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/json_text.hpp"
 
@@ -34,6 +35,8 @@ using nlohmann::ordered_json;
 using What = ArchiveRequest::What;
 
 constexpr auto kMaxCheck = std::chrono::seconds(60);
+constexpr auto kMaxSearch = std::chrono::seconds(60);
+constexpr auto kMaxTrial = std::chrono::seconds(90);
 constexpr auto kForgetEvery = std::chrono::minutes(1);
 constexpr const char* kRecordingType = "application/vnd.sqlite3";
 /// Of a copy beside its recording: what the recorder writes meanwhile, with room to spare.
@@ -71,6 +74,13 @@ std::string without_folder(std::string text, const fs::path& recording) {
   return text;
 }
 
+/// The last complete line of what is printed, a line for each state.
+std::string_view last_line(std::string_view text) {
+  text = text.substr(0, text.rfind('\n') == std::string_view::npos ? 0 : text.rfind('\n'));
+  const std::size_t before = text.rfind('\n');
+  return before == std::string_view::npos ? text : text.substr(before + 1);
+}
+
 ordered_json job_json(const Job& job, const fs::path& recording) {
   constexpr std::array<std::string_view, 3> kStates = {"running", "done", "failed"};
   ordered_json content = {{"id", job.id},
@@ -82,7 +92,9 @@ ordered_json job_json(const Job& job, const fs::path& recording) {
                           {"result", nullptr},
                           {"file", nullptr}};
   if (!job.printed.empty()) {
-    auto printed = ordered_json::parse(without_folder(job.printed, recording), nullptr, false);
+    const std::string text = without_folder(job.printed, recording);
+    auto printed = ordered_json::parse(text, nullptr, false);
+    if (printed.is_discarded()) printed = ordered_json::parse(last_line(text), nullptr, false);
     if (!printed.is_discarded()) content["result"] = std::move(printed);
   }
   if (job.file) {
@@ -126,6 +138,7 @@ struct Archive::Shared {
   Jobs jobs{};
   // Of the thread:
   KnownRecordings known{};
+  std::string known_drivers{};  ///< empty: not yet asked for
   std::vector<std::weak_ptr<const http::FileBody>> sent{};
 
   void work() {
@@ -171,6 +184,21 @@ struct Archive::Shared {
         return job_file(request.name);
       case What::kConfiguration:
         return configuration();
+      case What::kDrivers:
+        return drivers();
+      case What::kSensors:
+        return setup().list();
+      case What::kFindSensors:
+        return started(
+            {.kind = "find", .command = command({"sensors", "list", "--all", "--json"}), .time = kMaxSearch});
+      case What::kTrySensor:
+        return try_sensor(request.sensor);
+      case What::kAddSensor:
+        return setup().add(request.sensor);
+      case What::kRemoveSensor:
+        return setup().remove(request.name);
+      case What::kUndoSensors:
+        return setup().undo();
     }
     return problem(500, "Not done", "this request is not known");
   }
@@ -290,6 +318,27 @@ struct Archive::Shared {
     const auto found = jobs.find(id);
     if (!found || !found->file) return no_job();
     return send(*found->file);
+  }
+
+  SensorSetup setup() const { return {settings.configuration, settings.page, settings.restart}; }
+
+  http::Response drivers() {
+    if (known_drivers.empty()) {
+      const ChildOutput output = run_niced(command({"sensors", "describe", "--json"}), kMaxCheck, stop.get_token());
+      if (std::string failure = failure_of(output); !failure.empty()) return busy(failure);
+      known_drivers = for_the_page(output.printed);
+    }
+    return {.body = known_drivers};
+  }
+
+  http::Response try_sensor(const settings::PageSensor& sensor) {
+    auto text = setup().trial(sensor);
+    if (!text) return problem(409, "Not done", text.error().message);
+    return started({.kind = "try",
+                    .command = command({"sensors", "try", "-", "--json"}),
+                    .input = std::move(*text),
+                    .shows_progress = true,
+                    .time = kMaxTrial});
   }
 
   /// As the next start would read it.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "daemon/http/server.hpp"
+#include "daemon/settings/page_file.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -19,6 +20,8 @@ struct ArchiveSettings {
   std::uint64_t least_free_bytes = 0;        ///< a copy must leave so much on the recording's disk
   std::filesystem::path configuration = {};  ///< empty: the built-in one
   std::string stream = {};                   ///< where the daemon's stream listens; empty: as configured
+  std::filesystem::path page = {};           ///< what the page has set up; empty: it sets up nothing
+  std::function<void()> restart = {};        ///< has the daemon started again, soon; on any thread. Empty: it cannot be
   std::vector<std::string> program = {"/proc/self/exe"};  ///< the program that carries out jobs
 };
 
@@ -34,10 +37,18 @@ struct ArchiveRequest {
     kJob,      ///< how a job is
     kJobFile,  ///< what a job has made
     kConfiguration,
+    kDrivers,      ///< and those of their keys that the page may set
+    kSensors,      ///< that the page has set up
+    kFindSensors,  ///< a job
+    kTrySensor,    ///< a job
+    kAddSensor,
+    kRemoveSensor,
+    kUndoSensors,
   };
 
   What what = What::kList;
-  std::string name = {};  ///< of the recording, or the id of the job; hostile
+  std::string name = {};             ///< of the recording or the sensor, or the id of the job; hostile
+  settings::PageSensor sensor = {};  ///< to try or to add; hostile
 };
 
 /// Decodes the %XX of a name in a path (RFC 3986, 2.1). Returns an empty text, which is no name, if one is damaged.

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <system_error>
@@ -71,17 +72,19 @@ JobFile opened(const fs::path& path, const JobOrder& order) {
           .content_type = order.content_type};
 }
 
-Outcome carry_out(const JobOrder& order, const std::stop_token& stop) {
+Outcome carry_out(const JobOrder& order, const std::stop_token& stop,
+                  const std::function<void(const std::string&)>& look) {
   std::vector<std::string> command = order.command;
   std::optional<JobFolder> folder;
   if (!order.result.empty()) {
     folder.emplace(order.folder);
     command.push_back((folder->path() / order.result).string());
   }
-  ChildOutput output = run_niced(std::move(command), order.time, stop);
+  ChildOutput output = run_niced(std::move(command), order.time, stop, order.input, look);
   const bool has_finding = order.is_finding_good && output.end && output.end->shell_code() == kFinding;
   if (std::string failure = failure_of(output); !failure.empty() && !has_finding)
-    return {.failure = std::move(failure), .printed = {}, .file = {}};
+    return {
+        .failure = std::move(failure), .printed = order.shows_progress ? output.printed : std::string(), .file = {}};
   if (!folder) return {.failure = {}, .printed = std::move(output.printed), .file = {}};
   return {.failure = {}, .printed = {}, .file = opened(folder->path() / order.result, order)};
 }
@@ -100,6 +103,11 @@ struct Jobs::Work {
   bool is_running = false;
   std::uint64_t count = 0;
   std::deque<Kept> kept{};  ///< oldest first; the last one may run
+
+  void show(const std::string& printed) {
+    const std::lock_guard lock(mutex);
+    kept.back().job.printed = printed;
+  }
 
   void finish(Outcome outcome) {
     const std::lock_guard lock(mutex);
@@ -146,7 +154,12 @@ Result<std::string, Failure> Jobs::start(JobOrder order) {
   try {
     std::thread([work = work_, order = std::move(order)] {
       contain(
-          "a job of the page", [&] { work->finish(carry_out(order, work->stop.get_token())); },
+          "a job of the page",
+          [&] {
+            std::function<void(const std::string&)> look;
+            if (order.shows_progress) look = [&work](const std::string& printed) { work->show(printed); };
+            work->finish(carry_out(order, work->stop.get_token(), look));
+          },
           [&](const char* what) { work->finish({.failure = what, .printed = {}, .file = {}}); });
     }).detach();
   } catch (const std::exception& error) {  // no thread is to be had

@@ -20,6 +20,8 @@ struct JobOrder {
   std::string kind = {};                  ///< "verify"
   std::string recording = {};             ///< its name; empty: it is about none
   std::vector<std::string> command = {};  ///< without the file that it writes
+  std::string input = {};                 ///< what it reads
+  bool shows_progress = false;            ///< Job::printed is what it has printed so far
   std::string result = {};            ///< the name of that file, which is appended to `command`; empty: what it prints
   std::string content_type = {};      ///< of that file
   std::filesystem::path folder = {};  ///< where it is made, and removed with all that is in it; empty: a temporary one
@@ -40,7 +42,7 @@ struct Job {
   std::string id = {}, kind = {}, recording = {};
   State state = State::kRunning;
   std::string message = {};          ///< why it failed
-  std::string printed = {};          ///< its result, if it writes no file
+  std::string printed = {};          ///< its result, if it writes no file; also of a failure, if it shows progress
   std::optional<JobFile> file = {};  ///< its result
   Nanoseconds run_for{0};
 };

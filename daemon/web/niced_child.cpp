@@ -40,6 +40,12 @@ class MemoryFile {
     if (file_.get() < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
   }
   int get() const { return file_.get(); }
+  /// Writes a text, and goes back to its beginning. Throws std::system_error.
+  void fill(std::string_view text) const {
+    if (write(file_.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
+        lseek(file_.get(), 0, SEEK_SET) != 0)
+      throw std::system_error(errno, std::generic_category(), "memfd");
+  }
   std::size_t size() const {
     struct stat about {};
     return fstat(file_.get(), &about) == 0 ? static_cast<std::size_t>(about.st_size) : 0;
@@ -59,16 +65,27 @@ class MemoryFile {
 
 }  // namespace
 
-ChildOutput run_niced(std::vector<std::string> command, Nanoseconds time, const std::stop_token& stop) {
+ChildOutput run_niced(std::vector<std::string> command, Nanoseconds time, const std::stop_token& stop,
+                      const std::string& input, const std::function<void(const std::string&)>& look) {
   lower_priority();
   const auto deadline = steady_clock::now() + time;
   const MemoryFile printed("printed");
   const MemoryFile complaints("complaints");
+  const MemoryFile given("given");
+  given.fill(input);
+  std::size_t seen = 0;
   ChildOutput output;
   {
-    platform::ChildProcess child(
-        {.command = std::move(command), .output = printed.get(), .error = complaints.get(), .has_own_group = true});
+    platform::ChildProcess child({.command = std::move(command),
+                                  .input = given.get(),
+                                  .output = printed.get(),
+                                  .error = complaints.get(),
+                                  .has_own_group = true});
     while (!(output.end = child.end(kBetweenLooks_ms)) && output.why.empty()) {
+      if (look && printed.size() > seen) {
+        seen = printed.size();
+        look(printed.tail(kMaxPrinted_bytes));
+      }
       if (stop.stop_requested()) {
         output.why = "the daemon ends";
       } else if (steady_clock::now() >= deadline) {

@@ -238,6 +238,21 @@ Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json) {
   return wire::ReloadCommand{};
 }
 
+Result<settings::PageSensor, Failure> sensor_of(std::string_view json, bool has_name) {
+  constexpr std::size_t kMostKeys = 64;
+  Body body(json);
+  settings::PageSensor sensor;
+  if (has_name) {
+    sensor.name = body.text("name", "");
+    body.require(!sensor.name.empty(), "name: is missing: how the sensor is to be called");
+  }
+  sensor.driver = body.text("driver", "");
+  body.require(!sensor.driver.empty(), "driver: is missing; /api/v1/drivers lists all");
+  sensor.values = body.values("parameters", kMostKeys);
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return sensor;
+}
+
 Result<void, Failure> empty_body(std::string_view json) {
   Body body(json);
   if (auto mistake = body.mistake()) return std::move(*mistake);

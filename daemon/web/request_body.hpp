@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/settings/page_file.hpp"
 #include "engine/base/result.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -63,6 +64,9 @@ Result<wire::HandCommand, Failure> camera_of(std::string_view json);
 
 /// {}
 Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
+
+/// {"driver": name, "parameters": {key: value}}, and if it is to be added "name"
+Result<settings::PageSensor, Failure> sensor_of(std::string_view json, bool has_name);
 
 /// {}, of a request whose path has all
 Result<void, Failure> empty_body(std::string_view json);

@@ -235,6 +235,7 @@ Answer log(const http::Request& request, const Facts& facts) {
 
 using What = ArchiveRequest::What;
 constexpr std::string_view kRecordings = "/api/v1/recordings";
+constexpr std::string_view kSensors = "/api/v1/sensors";
 
 /// The name in /api/v1/recordings/NAME/verify; empty if the path has none.
 std::string name_in(std::string_view path) {
@@ -255,6 +256,18 @@ template <What kWhat>
 Answer job(const http::Request& request, const Facts& facts) {
   if (const auto body = empty_body(request.body); !body) return problem(400, "Not understood", body.error().message);
   return archived<kWhat>(request, facts);
+}
+
+Answer sensor_request(const http::Request& request, What what) {
+  auto sensor = sensor_of(request.body, what == What::kAddSensor);
+  if (!sensor) return problem(400, "Not understood", sensor.error().message);
+  return ArchiveRequest{.what = what, .sensor = std::move(*sensor)};
+}
+Answer add_sensor(const http::Request& request, const Facts& /*facts*/) {
+  return sensor_request(request, What::kAddSensor);
+}
+Answer try_sensor(const http::Request& request, const Facts& /*facts*/) {
+  return sensor_request(request, What::kTrySensor);
 }
 
 constexpr std::array kRoutes = {
@@ -289,6 +302,14 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/jobs/{id}", archived<What::kJob>, true},
     Route{"GET", "/api/v1/jobs/{id}/file", archived<What::kJobFile>, true},
     Route{"GET", "/api/v1/configuration", archived<What::kConfiguration>, true},
+
+    Route{"GET", "/api/v1/drivers", archived<What::kDrivers>, true},
+    Route{"GET", kSensors, archived<What::kSensors>},
+    Route{"POST", kSensors, add_sensor},
+    Route{"POST", "/api/v1/sensors/find", job<What::kFindSensors>, true},
+    Route{"POST", "/api/v1/sensors/try", try_sensor, true},
+    Route{"POST", "/api/v1/sensors/undo", job<What::kUndoSensors>, true},
+    Route{"DELETE", "/api/v1/sensors/{name}", archived<What::kRemoveSensor>, true},
 };
 
 /// Takes the first part of a path, up to the next slash, which goes, too.

@@ -45,11 +45,11 @@ class Http(unittest.TestCase):
         self.base = daemon.wait_for(r"answering at (http://\S+)").group(1)
         return daemon
 
-    def ask(self, path, body=None, **fields):
+    def ask(self, path, body=None, method=None, **fields):
         """Status and text of the answer; its cookies are in self.cookies."""
         data = None if body is None else json.dumps(body).encode()
         fields = {name.replace("_", "-"): value for name, value in fields.items()}
-        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json", **fields})
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json", **fields}, method=method)
         try:
             with urllib.request.urlopen(request, timeout=HANG_S) as answer:
                 self.cookies = answer.headers.get("Set-Cookie", "")
@@ -471,6 +471,143 @@ class Http(unittest.TestCase):
             other.write("another token than the daemon's\n")
         refused = subprocess.run([*token, "--sessions"], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 77, refused.stderr)
+
+    def start_daemon_for_setup(self, settings=""):
+        """A daemon without a sensor, and the rights to change it."""
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.token_file = os.path.join(folder, "token")
+        http = f'[http]\nlisten = "127.0.0.1:0"\ntoken_file = "{self.token_file}"\n'
+        self.file = self.write_config(http + settings + SMALL_MEADOW)
+        self.page = self.file + ".page.toml"
+        subprocess.run([YURAGI, "token", "--config", self.file, "--new"], capture_output=True, check=True)
+        with open(self.token_file, encoding="ascii") as secret_file:
+            self.rights = {"Authorization": "Bearer " + secret_file.read().strip()}
+        return self.start_daemon_with(self.file)
+
+    def set_up(self, path="", body=None, method=None):
+        code, text = self.ask("/api/v1/sensors" + path, body, method, **self.rights)
+        return code, json.loads(text)
+
+    def change_and_wait(self, daemon, *request):
+        """Changes what the page has set up, and waits for the daemon, which starts again."""
+        starts = daemon.text().count("answering at")
+        code, answer = self.set_up(*request)
+        self.assertEqual(code, 200, answer)
+        self.base = daemon.wait_for(rf"(?s)(?:answering at.*){{{starts}}}answering at (http://\S+)").group(1)
+
+    def sensors(self):
+        hangs = time.monotonic() + HANG_S
+        while time.monotonic() < hangs:
+            code, text = self.ask("/api/v1/status")
+            if code == 200:
+                return [sensor["name"] for sensor in json.loads(text)["sensors"]]
+        self.fail(text)
+
+    def test_a_sensor_is_tried_added_removed_and_the_change_undone(self):
+        simulator = self.enterContext(Program(os.path.join(os.path.dirname(YURAGI), "yuragi-sim"), "nmea", "--tcp", "127.0.0.1:0", "--rate", "5"))
+        port = int(simulator.wait_for(r"127\.0\.0\.1:(\d+)").group(1))
+        parameters = {"transport": "tcp", "host": "127.0.0.1", "port": port}
+        daemon = self.start_daemon_for_setup()
+        self.assertEqual(self.sensors(), ["synthetic"])
+        self.assertEqual(self.set_up(), (200, {"sensors": [], "can_undo": False, "trouble": None}))
+        drivers = json.loads(self.ask("/api/v1/drivers", **self.rights)[1])["drivers"]
+        keys = {driver["name"]: [key["name"] for key in driver["parameters"]] for driver in drivers}
+        self.assertIn("port", keys["nmea"])
+        self.assertNotIn("file", keys["nmea"])
+        self.assertNotIn("windlog", keys)
+
+        code, job = self.set_up("/try", {"driver": "nmea", "parameters": parameters})
+        self.assertEqual(code, 202)
+        hangs = time.monotonic() + HANG_S
+        while job["state"] == "running" and time.monotonic() < hangs:
+            time.sleep(0.1)
+            job = json.loads(self.ask("/api/v1/jobs/" + job["id"], **self.rights)[1])
+        self.assertEqual((job["state"], job["result"][0]["state"]), ("done", "live"), job)
+        self.assertFalse(os.path.exists(self.page), "a trial writes nothing")
+
+        added = {"name": "roof", "driver": "nmea", "parameters": parameters}
+        self.change_and_wait(daemon, "", added)
+        self.assertEqual(self.sensors(), ["roof"])
+        self.wait_for("/api/v1/status", 200, '"state": "live"')
+        self.assertEqual(os.stat(self.page).st_mode & 0o077, 0)
+        self.assertEqual(self.set_up(), (200, {"sensors": ["roof"], "can_undo": True, "trouble": None}))
+        self.assertIn(self.page, subprocess.run([YURAGI, "check-config", self.file], capture_output=True, text=True, check=True).stdout)
+        code, refusal = self.set_up("/try", {"driver": "nmea", "parameters": parameters})
+        self.assertEqual(code, 409)
+        self.assertIn('"roof"', refusal["detail"], "its device is the daemon's")
+
+        self.change_and_wait(daemon, "/roof", None, "DELETE")
+        self.assertEqual(self.sensors(), ["synthetic"])
+        self.change_and_wait(daemon, "/undo", {})
+        self.assertEqual(self.sensors(), ["roof"])
+        self.change_and_wait(daemon, "/undo", {})
+        self.assertEqual(self.sensors(), ["synthetic"])
+
+    def test_nothing_is_set_up_without_rights_or_with_a_mistake(self):
+        self.start_daemon_for_setup('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')
+        roof = {"name": "roof", "driver": "nmea", "parameters": {"transport": "tcp", "host": "127.0.0.1", "port": 4001}}
+        requests = (("", roof, None), ("/find", {}, None), ("/try", {"driver": "nmea"}, None), ("/undo", {}, None), ("/mast", None, "DELETE"))
+        for path, body, method in requests:
+            self.assertEqual(self.ask("/api/v1/sensors" + path, body, method)[0], 401, path)
+            self.assertEqual(self.ask("/api/v1/sensors" + path, body, method, Origin="http://other.example", **self.rights)[0], 403, path)
+        self.assertEqual(self.ask("/api/v1/drivers")[0], 401)
+
+        def refused(name="roof", driver="nmea", **parameters):
+            code, answer = self.set_up("", {"name": name, "driver": driver, "parameters": parameters})
+            self.assertEqual(code, 409, answer)
+            return answer["detail"]
+
+        self.assertIn('"mast" is in use', refused(name="mast"))
+        self.assertIn("sensor.driver: is \"nothing\"", refused(driver="nothing"))
+        self.assertIn("sensor.port: is 0", refused(transport="tcp", host="127.0.0.1", port=0))
+        self.assertIn("sensor.file: is not for the page", refused(transport="file", file="/etc/passwd"))
+        self.assertIn("sensor.worker: is not for the page", refused(driver="microphone", worker="/bin/sh"))
+        self.assertIn("must be a device in /dev", refused(device="/etc/passwd"))
+        self.assertIn("not for the page", refused(driver="windlog", file="/tmp/a.windlog"))
+        self.assertIn("sensor.x", refused(x="1"))
+        for body in ({"name": "roof"}, {"driver": "nmea"}, {"name": "roof", "driver": "nmea", "parameters": {"a": [1]}}, {"name": "roof", "driver": "nmea", "run": "x"}):
+            self.assertEqual(self.set_up("", body)[0], 400, body)
+        self.assertEqual(self.set_up("/mast", None, "DELETE")[0], 404, "it is in the configuration")
+        self.assertEqual(self.set_up("/undo", {})[0], 409)
+        self.assertFalse(os.path.exists(self.page))
+
+    def test_without_a_token_nobody_sets_sensors_up(self):
+        self.start_daemon('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')
+        code, text = self.ask("/api/v1/sensors", {"name": "roof", "driver": "synthetic"})
+        self.assertEqual(code, 409)
+        self.assertIn("token_file", json.loads(text)["detail"])
+
+    def test_a_damaged_file_of_the_page_is_left_out_and_said(self):
+        daemon = self.start_daemon_for_setup('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')
+        self.change_and_wait(daemon, "", {"name": "roof", "driver": "synthetic"})
+        self.assertEqual(self.sensors(), ["mast", "roof"])
+        daemon.end()
+        with open(self.page, "a", encoding="utf-8") as page:
+            page.write("[[alert]]\nname = 'a'\ncommand = 'touch /tmp/owned'\n")
+        daemon = self.start_daemon_with(self.file)
+        self.assertEqual(self.sensors(), ["mast"])
+        self.wait_for("/healthz", 503, r"what the page has set up is left out: .*page\.toml:\d+:\d+: alert: is not for the page")
+        checked = subprocess.run([YURAGI, "check-config", self.file], capture_output=True, text=True, check=True)
+        self.assertIn("is left out", checked.stderr)
+
+    def test_a_daemon_that_is_killed_while_a_sensor_is_added_has_all_of_it_or_nothing(self):
+        whole = "# The sensors"
+        for wait_s in (0, 0.002, 0.005, 0.01, 0.02):
+            daemon = self.start_daemon_for_setup()
+            body = json.dumps({"name": "roof", "driver": "synthetic"}).encode()
+            address = urllib.parse.urlsplit(self.base).netloc
+            with socket.create_connection(address.split(":")) as client:
+                client.sendall((f"POST /api/v1/sensors HTTP/1.1\r\nHost: {address}\r\nContent-Type: application/json\r\n"
+                                f"Authorization: {self.rights['Authorization']}\r\nContent-Length: {len(body)}\r\n\r\n").encode() + body)
+                time.sleep(wait_s)
+                daemon.process.kill()
+                daemon.process.wait()
+            if os.path.exists(self.page):
+                with open(self.page, encoding="utf-8") as page:
+                    text = page.read()
+                self.assertTrue(text.startswith(whole) and text.endswith('driver = "synthetic"\n'), text)
+            self.start_daemon_with(self.file)
+            self.assertEqual(self.sensors(), ["roof"] if os.path.exists(self.page) else ["synthetic"])
 
     def test_what_cannot_be_opened_at_the_start_is_tried_again(self):
         folder = self.enterContext(tempfile.TemporaryDirectory())

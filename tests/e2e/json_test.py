@@ -71,6 +71,7 @@ TABLES = {
     "sensors list": ([], [r'^    driver = "(\w+)"']),
     "sensors probe modbus": (["MODBUS", "--id", "1-2"], [r"^#   fits (\S+) "]),
     "sensors describe": ([], [r"^(\w+) +(.*)$"]),
+    "sensors try": (["ALONE", "--duration", "2"], [r"^(made-up) +(\w+) "]),
     "sensors watch": (["--connect", "ADDRESS", "--once"], [r"^(made-up|garden|played) +(\S+) "]),
     "check-config": (["CONFIG"], [r"^  sensor (\S+) \((\S+)\), (\S+),", r"^  scene (\S+) \((\S+)\)"]),
     "describe": ([], [r"^(\[.*?\])  # (.*)$", r"^  (\w+) {2,}(\S.*)$"]),
@@ -175,7 +176,7 @@ class Json(unittest.TestCase):
                 self.assertEqual(printed.returncode, table.returncode, printed.stderr)
                 self.assertNotIn(PASSWORD, printed.stdout + printed.stderr)
                 self.assertNotIn("NaN", printed.stdout)
-                is_line_by_line = name in ("sensors watch", "sensors probe modbus")
+                is_line_by_line = name in ("sensors watch", "sensors try", "sensors probe modbus")
                 texts = printed.stdout.splitlines() if is_line_by_line else [printed.stdout]
                 held = values_in([json.loads(text) for text in texts])
                 wanted = [word for pattern in patterns for match in re.finditer(pattern, table.stdout, re.M)

@@ -11,7 +11,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -600,6 +600,61 @@ driver = "synthetic"
   const page = await open(`http://127.0.0.1:${port}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
   return { page, token, code: () => JSON.parse(token("--json")).pairing_code };
 }
+
+test("a sensor is set up on the page, from nothing to live, removed, and back by undo", { timeout: 4 * HANG_MS }, async () => {
+  const file = configured("setup.toml", `
+[http]
+listen = "127.0.0.1:${setupPort}"
+token_file = "${path.join(folder, "token-setup")}"
+`);
+  const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
+  token("--new");
+  await startDaemon(file);
+  const station = await start("yuragi-sim", ["nmea", "--tcp", "127.0.0.1:0", "--rate", "5"], /127\.0\.0\.1:(\d+)/);
+  const page = await open(`http://127.0.0.1:${setupPort}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  await waitForSentence(page, /^Synthetic wind, not measured: synthetic/);
+  await page.getByRole("button", { name: "Add a sensor" }).click();
+  await page.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
+  await page.getByRole("button", { name: "Pair", exact: true }).click();
+  await page.waitForSelector("#setup[open]");
+  await page.route("**/api/v1/sensors/find", (route) => route.fulfill({ status: 202, json: { id: "0", kind: "find", recording: null, state: "done", run_for_s: 1, message: "", file: null,
+    result: [{ driver: "nmea", device: HOSTILE, settings: `transport = "tcp"\nhost = "192.0.2.1"  # "here"\nport = 4800  # or 9600\n`, trouble: HOSTILE, remedy: null }] } }));
+  await page.click("#setup-find");
+  await page.locator("#setup-found button").click();
+  assert.equal(await page.inputValue("#setup-driver"), "nmea");
+  assert.deepEqual([await page.inputValue("#setup-transport"), await page.inputValue("#setup-host"), await page.inputValue("#setup-port")], ["tcp", "192.0.2.1", "4800"]);
+  assert.equal(await page.isVisible("#setup-file"), false, "a file is not for the page");
+  await page.fill("#setup-host", "127.0.0.1");
+  await page.fill("#setup-port", station.answer[1]);
+  await assertAccessible(page, "setup");
+  await page.click("#setup-try");
+  await page.waitForSelector("#setup-result:text-matches('^live: ')");
+  await page.waitForSelector("#setup-result:text-matches('^It works: live: ')");
+  await screenshot(page, "setup-1920-light");
+  await page.fill("#setup-port", "70000");
+  await page.fill("#setup-name", "roof");
+  await page.evaluate(() => (document.getElementById("setup-form").noValidate = true)); // what the browser would refuse is sent
+  await page.click("#setup-add");
+  await page.waitForSelector("#setup-error:text('sensor.port: is 70000; allowed: whole number from 1 to 65535')");
+  await page.fill("#setup-port", station.answer[1]);
+  await page.click("#setup-add");
+  await page.waitForSelector("#setup:not([open])", { state: "attached" });
+  await waitForSentence(page, LIVE);
+  assert.deepEqual(await page.$$eval("#sensors h3", (all) => all.map((one) => one.textContent)), ["roof"]);
+  await page.getByRole("button", { name: "Remove: roof" }).click();
+  await waitForSentence(page, /^Synthetic wind, not measured: synthetic/);
+  await page.getByRole("button", { name: "Undo the last change" }).click();
+  await waitForSentence(page, LIVE);
+  await assertAccessible(page, "a sensor of the page");
+  await page.setViewportSize({ width: 320, height: 800 });
+  await page.getByRole("button", { name: "Add a sensor" }).click();
+  await page.waitForSelector("#setup[open]");
+  assert.equal(await isWider(page, 320), false);
+  await screenshot(page, "setup-320-light");
+  assert.equal(await page.evaluate(() => document.title.includes("owned")), false);
+  await page.context().close();
+  await kill(station);
+});
 
 test("another machine reads, and pairs before it changes something; hostile names stay text", { timeout: 2 * HANG_MS }, async () => {
   const { page, token, code } = await openFromElsewhere(pairingPort, "");

@@ -81,7 +81,7 @@ export class ArchiveView {
     };
     /** The job, if it has succeeded. */
     const job = async (kind: string) => {
-      const ended = await carry_out(this.change, `${path}/${kind}`, show);
+      const ended = await carry_out(this.change, `${path}/${kind}`, (text) => show(text));
       if (ended?.state === "failed") show(ended.message, DAEMON_LANGUAGE);
       return ended?.state === "done" ? ended : undefined;
     };
@@ -93,7 +93,7 @@ export class ArchiveView {
       download(file.path, file.name);
     });
     button(texts.verify, texts.verify_of(name), async () => {
-      const verification = (await job("verify"))?.result;
+      const verification = (await job("verify"))?.result as Verification | null | undefined;
       if (verification) result.replaceChildren(...verification_text(verification));
     });
     button(texts.report, texts.report_of(name), async () => {

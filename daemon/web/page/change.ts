@@ -12,12 +12,17 @@ export class Change {
   constructor(private readonly pairing: Pairing) {}
 
   /** Sends the request; undefined if it was not carried out. The page then shows why, or `refused` does. */
-  async make<T>(path: string, body: object, refused = (why: string) => this.tell(DAEMON_LANGUAGE, why)): Promise<T | undefined> {
+  async make<T>(path: string, body: object, refused = (why: string) => this.tell(DAEMON_LANGUAGE, why), method = "POST"): Promise<T | undefined> {
+    return this.with_rights(() => ask<T>(path, body, undefined, method), refused);
+  }
+
+  /** Asks for something that takes the right to change something; undefined if it was refused. */
+  async with_rights<T>(act: () => Promise<T>, refused = (why: string) => this.tell(DAEMON_LANGUAGE, why)): Promise<T | undefined> {
     try {
-      return await ask<T>(path, body);
+      return await act();
     } catch (error) {
       if (error instanceof Refused && error.status === 401) {
-        if (await this.pairing.open(error.message)) return this.make<T>(path, body, refused);
+        if (await this.pairing.open(error.message)) return this.with_rights(act, refused);
       } else if (error instanceof Refused) {
         refused(error.message);
       } else {
@@ -27,7 +32,7 @@ export class Change {
     }
   }
 
-  private tell(lang: string, text: string): void {
+  tell(lang: string, text: string): void {
     const toast = by_id("toast");
     set_text_in(lang, by_id("alert"), text);
     set_text_in(lang, toast, text);

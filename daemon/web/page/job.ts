@@ -9,10 +9,10 @@ const ASK_EVERY_MS = 500;
 const MAX_FAILURES = 20;
 
 /** Begins a job and waits for its end; undefined if it was not begun, or the daemon does not know it any more. `show` gets what to show meanwhile. */
-export async function carry_out(change: Change, path: string, show: (text: string) => void): Promise<Job | undefined> {
-  let job = await change.make<Job>(path, {});
+export async function carry_out(change: Change, path: string, show: (text: string, job?: Job) => void, body: object = {}, refused?: (why: string) => void): Promise<Job | undefined> {
+  let job = await change.make<Job>(path, body, refused);
   for (let failures = 0; job?.state === "running"; ) {
-    show(texts.job_runs(duration_text(job.run_for_s)));
+    show(texts.job_runs(duration_text(job.run_for_s)), job);
     await new Promise((resolve) => setTimeout(resolve, ASK_EVERY_MS));
     try {
       job = await ask<Job>(`/api/v1/jobs/${job.id}`);

@@ -15,6 +15,7 @@ import { ask } from "./request";
 import { ScenesView } from "./scenes_view";
 import { Knowledge, verdict_of } from "./sentence";
 import { SensorsView } from "./sensors_view";
+import { SetupView } from "./setup_view";
 import { Player, Scene, Status } from "./status";
 import { SupportView } from "./support_view";
 import { DAEMON_LANGUAGE, fill_in_texts, offer_languages, texts } from "./texts";
@@ -31,6 +32,7 @@ const pairing = new Pairing();
 const change = new Change(pairing);
 const wind = new WindView(by_id("wind"));
 const sensors = new SensorsView(by_id("sensors"));
+const setup = new SetupView(by_id("setup-place"), change);
 const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
 const history = new HistoryView(by_id("history"));
@@ -139,6 +141,7 @@ void listen({
     if (is_back) {
       void ask_for_lists();
       void wind.fill();
+      void setup.ask_now();
       history.ask_now();
       log.ask_now();
       archive.ask_now();

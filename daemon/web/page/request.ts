@@ -13,13 +13,13 @@ export class Refused extends Error {
 }
 
 /** The JSON of its answer. Throws Refused, or any other error if no reply came. */
-export async function ask<T>(path: string, body?: object, patience_ms = PATIENCE_MS + (body ? PATIENCE_MS : 0)): Promise<T> {
+export async function ask<T>(path: string, body?: object, patience_ms = PATIENCE_MS + (body ? PATIENCE_MS : 0), method = "POST"): Promise<T> {
   const abort = new AbortController();
   const patience = setTimeout(() => abort.abort(), patience_ms);
   try {
     const answer = await fetch(path, {
       signal: abort.signal,
-      ...(body && { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) }),
+      ...(body && { method, headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) }),
     });
     if (answer.ok) return (await answer.json()) as T;
     throw new Refused(answer.status, await detail_of(answer));

@@ -176,8 +176,41 @@ export interface Job {
   state: "running" | "done" | "failed";
   run_for_s: number;
   message: string;
-  result: Verification | null;
+  result: Verification | object[] | null;
   file: { path: string; name: string; bytes: number } | null;
+}
+
+/** A device that was found; settings: lines of TOML. */
+export interface FoundDevice {
+  driver: string;
+  device: string;
+  settings: string | null;
+  trouble: string | null;
+  remedy: string | null;
+}
+
+export interface DriverKey {
+  name: string;
+  type: "boolean" | "integer" | "number" | "text" | "secret";
+  unit: string | null;
+  default: number | boolean | string | null;
+  min: number | null;
+  max: number | null;
+  choices: string[] | null;
+  help: string;
+}
+
+export interface Driver {
+  name: string;
+  summary: string;
+  parameters: DriverKey[];
+  device_setup: string | null;
+}
+
+/** What was set up on the page. */
+export interface SetUp {
+  sensors: string[];
+  can_undo: boolean;
 }
 
 export interface Configuration {

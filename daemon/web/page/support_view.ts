@@ -39,7 +39,7 @@ export class SupportView {
 
   private async make_bundle(): Promise<void> {
     const show = (text: string, lang = language) => set_text_in(lang, this.progress, text);
-    const job = await carry_out(this.change, "/api/v1/support-bundle", show);
+    const job = await carry_out(this.change, "/api/v1/support-bundle", (text) => show(text));
     if (job?.state === "failed") show(job.message, DAEMON_LANGUAGE);
     if (!job?.file) return;
     show("");

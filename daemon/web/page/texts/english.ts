@@ -68,6 +68,17 @@ export const english = {
   times_group: (times: string) => `Reads ${times} times the group`,
   quantities: { direction: "direction", gust: "gust" },
   quantity_missing: (quantity: string, reason: string) => `No ${quantity}: ${reason}`,
+  add_sensor: "Add a sensor",
+  find_sensors: "Find sensors",
+  sensor_driver: "Driver",
+  try_sensor: "Try",
+  sensor_name: "Name",
+  add: "Add",
+  add_restarts: "The daemon is started again with it, which takes some seconds.",
+  nothing_found: "Nothing was found. Choose the driver, and set its address by hand.",
+  remove_sensor: (name: string) => `Remove: ${name}`,
+  undo_sensors: "Undo the last change",
+  sensor_works: (state: string) => `It works: ${state}`,
 
   // Scenes.
   scenes: "Scenes",

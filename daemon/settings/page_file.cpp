@@ -1,0 +1,255 @@
+#include "daemon/settings/page_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include "daemon/settings/config_edit.hpp"
+#include "daemon/settings/config_file.hpp"
+#include "daemon/settings/own_token.hpp"
+#include "daemon/settings/same_device.hpp"
+#include "engine/platform/whole_file.hpp"
+#include "engine/tables/parse_toml.hpp"
+
+namespace yuragi::daemon::settings {
+namespace {
+
+constexpr const char* kFileName = "page.toml";
+constexpr const char* kServicePage = "/var/lib/yuragi/page.toml";
+constexpr const char* kHead =
+    "# The sensors that were set up on the page. Written by yuragi; `yuragi check-config` shows what it amounts to.\n";
+constexpr std::string_view kDevices = "/dev/";
+constexpr std::string_view kBareKey = "abcdefghijklmnopqrstuvwxyz0123456789_";
+
+/// Texts that name nothing of this machine's disk: addresses, places in what a device sends, passwords.
+constexpr auto kPlainTexts = std::to_array<std::string_view>({"davis.host",
+                                                              "ecowitt-push.from",
+                                                              "ecowitt-push.host",
+                                                              "ecowitt-push.host_name",
+                                                              "ecowitt-push.path",
+                                                              "ecowitt-push.station_key",
+                                                              "ecowitt.host",
+                                                              "hid.serial",
+                                                              "json.direction",
+                                                              "json.gust",
+                                                              "json.speed",
+                                                              "json.time",
+                                                              "json.url",
+                                                              "line.direction_key",
+                                                              "line.gust_key",
+                                                              "line.host",
+                                                              "line.invalid",
+                                                              "line.sender",
+                                                              "line.speed_key",
+                                                              "microphone.curve",
+                                                              "microphone.device",
+                                                              "microphone.faces",
+                                                              "microphone.host_api",
+                                                              "modbus.host",
+                                                              "mqtt.channel",
+                                                              "mqtt.direction_path",
+                                                              "mqtt.direction_topic",
+                                                              "mqtt.gust_path",
+                                                              "mqtt.gust_topic",
+                                                              "mqtt.host",
+                                                              "mqtt.id",
+                                                              "mqtt.model",
+                                                              "mqtt.password",
+                                                              "mqtt.speed_path",
+                                                              "mqtt.topic",
+                                                              "mqtt.user",
+                                                              "nmea.address",
+                                                              "nmea.host",
+                                                              "nmea.sender",
+                                                              "nmea.sentences",
+                                                              "nmea.talker",
+                                                              "nmea2000.host",
+                                                              "nmea2000.interface",
+                                                              "nmea2000.sender",
+                                                              "osc.address",
+                                                              "osc.direction_address",
+                                                              "osc.from",
+                                                              "osc.gust_address",
+                                                              "osc.host",
+                                                              "signalk.context",
+                                                              "signalk.host",
+                                                              "signalk.path",
+                                                              "signalk.sender",
+                                                              "signalk.source",
+                                                              "signalk.token",
+                                                              "tempest.from",
+                                                              "tempest.host",
+                                                              "tempest.serial_number",
+                                                              "umb.host",
+                                                              "usb.port",
+                                                              "usb.serial",
+                                                              "weatherlink.host"});
+
+/// Texts that name a device: only one of /dev.
+constexpr auto kDeviceTexts =
+    std::to_array<std::string_view>({"davis.device", "umb.device", "modbus.device", "modbus.direction_device",
+                                     "nmea.device", "nmea2000.device", "signalk.device", "line.device", "hid.path"});
+
+/// Texts that are a name of ours or the path of a file: only the name.
+constexpr auto kNameTexts = std::to_array<std::string_view>({"modbus.profile"});
+
+enum class Kind : std::uint8_t { kPlain, kDevice, kName, kRefused };
+
+template <class List>
+bool has(const List& list, const std::string& key) {
+  return std::ranges::find(list, key) != list.end();
+}
+
+bool is_text(const Parameter& key) {
+  return std::holds_alternative<std::string>(key.default_value) || std::holds_alternative<Secret>(key.default_value);
+}
+
+Kind kind_of(const drivers::sensor::DriverDescription& driver, const Parameter& key) {
+  if (driver.plays_recordings) return Kind::kRefused;
+  if (!is_text(key) || !key.choices.empty()) return Kind::kPlain;
+  const std::string full = fmt::format("{}.{}", driver.name, key.name);
+  if (has(kDeviceTexts, full)) return Kind::kDevice;
+  if (has(kNameTexts, full)) return Kind::kName;
+  return has(kPlainTexts, full) ? Kind::kPlain : Kind::kRefused;
+}
+
+Failure not_toml() {
+  return {"page.toml is not TOML", FailureKind::kBadData};
+}
+
+std::string name_of(const toml::table& entry) {
+  return entry["name"].value<std::string>().value_or(entry["driver"].value_or(std::string()));
+}
+
+/// The list of sensors; null: there is none.
+const toml::array* list_in(const toml::table& root) {
+  return root["sensor"].as_array();
+}
+
+bool can_be_used(const Config& config) {
+  try {
+    open_sensors(config.sensors);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::filesystem::path page_file(const std::filesystem::path& config_file) {
+  const std::filesystem::path file = state_file(config_file, kFileName);
+  // A command of a terminal has no STATE_DIRECTORY.
+  const bool is_of_service = !config_file.empty() && absolute_path(config_file) == kServiceConfig;
+  return is_of_service && file.filename() != kFileName ? std::filesystem::path(kServicePage) : file;
+}
+
+std::optional<std::string> page_refusal(const drivers::sensor::DriverDescription& driver, const Parameter& key) {
+  if (driver.plays_recordings) return "is of a recording, which is not for the page: write it into the configuration";
+  if (kind_of(driver, key) != Kind::kRefused) return std::nullopt;
+  return "is not for the page, because it can name a file or a program: write this sensor into the configuration";
+}
+
+std::optional<std::string> page_refusal(const drivers::sensor::DriverDescription& driver, const Parameter& key,
+                                        const ParameterValue& value) {
+  if (auto refusal = page_refusal(driver, key)) return refusal;
+  const auto* const text = std::get_if<std::string>(&value);
+  if (text == nullptr || text->empty()) return std::nullopt;
+  const Kind kind = kind_of(driver, key);
+  if (kind == Kind::kDevice && (!text->starts_with(kDevices) || text->find("..") != std::string::npos))
+    return "must be a device in /dev";
+  if (kind == Kind::kName && (text->find('/') != std::string::npos || text->ends_with(".toml")))
+    return "must be a name: a path is not for the page";
+  return std::nullopt;
+}
+
+Config with_page_checked(const Config& config, std::string_view page_text, const std::string& source_name) {
+  Config both = with_page(config, page_text, source_name);
+  std::vector<std::unique_ptr<drivers::sensor::Sensor>> opened;  // together: they may need the same line
+  for (const SensorConfig& sensor : both.sensors) {
+    if (std::ranges::find(config.sensors, sensor.name, &SensorConfig::name) == config.sensors.end())
+      opened.push_back(open_sensor(sensor));
+  }
+  refuse_same_device(both.sensors);
+  return both;
+}
+
+Config load_installation(const std::filesystem::path& file) {
+  Config config = load_config(file);
+  const std::filesystem::path page = page_file(file);
+  std::error_code error;
+  if (page.empty() || (!std::filesystem::exists(page, error) && !error)) return config;
+  const auto text = platform::read_whole(page, kMaxPage_bytes);
+  if (!text) {
+    config.page_trouble = page.string() + ":1:1: file: " + text.error().message;
+    return config;
+  }
+  try {
+    Config both = with_page(config, *text, page.string());
+    both.page_file = page.string();
+    if (can_be_used(config)) open_sensors(both.sensors);  // otherwise it is the fault of the configuration
+    return both;
+  } catch (const std::exception& fault) {
+    config.page_trouble = fault.what();
+  }
+  return config;
+}
+
+std::string with_sensor(std::string_view page_text, const PageSensor& sensor) {
+  std::string text(page_text.empty() ? std::string_view(kHead) : page_text);
+  if (!text.ends_with('\n')) text += '\n';
+  text += fmt::format("\n[[sensor]]\nname = {}\ndriver = {}\n", toml_value(sensor.name), toml_value(sensor.driver));
+  const auto* const driver = drivers::sensor::find_driver(sensor.driver);
+  for (const auto& [key, typed] : sensor.values) {
+    ParameterValue value = typed;
+    if (driver != nullptr) {
+      const auto known = std::ranges::find(driver->parameters, key, &Parameter::name);
+      if (known != driver->parameters.end() && !is_text(*known)) value = typed_value(*known, typed);
+    }
+    const bool is_bare = !key.empty() && key.find_first_not_of(kBareKey) == std::string::npos;
+    text += fmt::format("{} = {}\n", is_bare ? key : toml_value(key), toml_value(value));
+  }
+  return text;
+}
+
+Result<std::string, Failure> without_sensor(std::string_view page_text, std::string_view name) {
+  try {
+    toml::table root = tables::parse_toml(page_text);
+    toml::array* const list = root["sensor"].as_array();
+    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+      const toml::table* const entry = list->get(i)->as_table();
+      if (entry == nullptr || name_of(*entry) != name) continue;
+      list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
+      if (list->empty()) root.erase("sensor");
+      std::ostringstream out;
+      out << kHead << '\n' << root << '\n';
+      return {boost::system::in_place_value, out.str()};
+    }
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+  return Failure{fmt::format("the page has set up no sensor \"{}\"", name), FailureKind::kNoInput};
+}
+
+Result<std::vector<std::string>, Failure> sensors_in(std::string_view page_text) {
+  try {
+    std::vector<std::string> names;
+    const toml::table root = tables::parse_toml(page_text);
+    if (const toml::array* const list = list_in(root)) {
+      for (const toml::node& each : *list) {
+        if (const toml::table* const entry = each.as_table()) names.push_back(name_of(*entry));
+      }
+    }
+    return names;
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+}
+
+}  // namespace yuragi::daemon::settings

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "daemon/http/server.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/page_file.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::web {
+
+/// What `yuragi sensors describe --json` prints, without the drivers and keys that the page may not set. Pure.
+std::string for_the_page(const std::string& described);
+
+/// Sets sensors up on the page: changes the file of the page (settings/page_file.hpp), which is whole at any moment,
+/// and has the daemon started again. The state before stays beside it as FILE.before. Waits for the disk.
+class SensorSetup {
+ public:
+  /// `restart`: empty: the daemon cannot be started again, and nothing is set up.
+  SensorSetup(std::filesystem::path configuration, std::filesystem::path page, std::function<void()> restart);
+
+  /// The names of the sensors that the page has set up, and whether there is something to undo.
+  http::Response list() const;
+  http::Response add(const settings::PageSensor& sensor) const;
+  http::Response remove(const std::string& name) const;
+  /// Exchanges the file and the state before it: a second time undoes this.
+  http::Response undo() const;
+
+  /// A configuration with this sensor alone. Fails if it has a mistake, or its device is one of the daemon's.
+  Result<std::string, Failure> trial(const settings::PageSensor& sensor) const;
+
+ private:
+  std::filesystem::path before() const;
+  Result<settings::Config, Failure> configuration() const;
+  Result<std::string, Failure> text_of(const std::filesystem::path& file) const;
+  Result<void, Failure> check(const std::string& text) const;
+  http::Response replace(const Result<std::string, Failure>& text, std::string_view done) const;
+  http::Response done(std::string_view what) const;
+
+  std::filesystem::path configuration_, page_;
+  std::function<void()> restart_;
+};
+
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,217 @@
+#include "daemon/settings/page_file.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/settings/reload_plan.hpp"
+#include "daemon/settings/secret_exposure.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi::daemon::settings {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+constexpr const char* kRoof =
+    "[[sensor]]\nname = \"roof\"\ndriver = \"nmea\"\ntransport = \"tcp\"\nhost = \"127.0.0.1\"\nport = 4001\n";
+
+std::string refusal_of(const std::string& page, const Config& config = default_config()) {
+  try {
+    with_page_checked(config, page, "page.toml");
+    return "";
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+}
+
+std::vector<std::string> names_in(const Config& config) {
+  std::vector<std::string> names;
+  for (const SensorConfig& sensor : config.sensors) names.push_back(sensor.name);
+  return names;
+}
+
+bool is_free_text(const Parameter& key) {
+  const bool is_text =
+      std::holds_alternative<std::string>(key.default_value) || std::holds_alternative<Secret>(key.default_value);
+  return is_text && key.choices.empty();
+}
+
+std::string page_with(std::string_view driver, std::string_view key, std::string_view value) {
+  return fmt::format("[[sensor]]\nname = \"a\"\ndriver = \"{}\"\n{} = \"{}\"\n", driver, key, value);
+}
+
+TEST(PageFile, ItsSensorsAreTheLast_AndReplaceTheSyntheticOneOfAFileWithoutAny) {
+  EXPECT_THAT(names_in(with_page(default_config(), kRoof, "page.toml")), ElementsAre("roof"));
+  const Config two = parse_config("[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n", "a.toml");
+  EXPECT_THAT(names_in(with_page(two, kRoof, "page.toml")), ElementsAre("mast", "roof"));
+  EXPECT_THAT(names_in(with_page(default_config(), "", "page.toml")), ElementsAre("synthetic"));
+}
+
+TEST(PageFile, AMistakeIsToldWithItsFileAndLine) {
+  const Config roof = parse_config("[[sensor]]\nname = \"roof\"\ndriver = \"synthetic\"\n", "a.toml");
+  EXPECT_THAT(refusal_of(kRoof, roof), HasSubstr("page.toml:2:8: sensor.name: \"roof\" is in use"));
+  EXPECT_THAT(refusal_of("[[sensor]]\ndriver = \"nmea\"\nport = 0\n"), StartsWith("page.toml:3:8: sensor.port: is 0"));
+  EXPECT_THAT(refusal_of(std::string(kRoof) + kRoof), HasSubstr("is used twice"));
+  EXPECT_THAT(refusal_of("[[sensor]"), StartsWith("page.toml:1:"));
+}
+
+TEST(PageFile, NothingButSensorsIsRead) {
+  for (const char* const hostile :
+       {"seed = 2\n", "[http]\nlisten = \"0.0.0.0:80\"\n", "[[alert]]\nname = \"a\"\ncommand = \"true\"\n",
+        "[recording]\nfile = \"/tmp/a.windlog\"\n", "[look]\nground_image = \"/etc/passwd\"\n",
+        "[[scene]]\nname = \"a\"\nkind = \"grass\"\n", "[[output]]\n", "sensor = 1\n",
+        "[sensor]\ndriver = \"nmea\"\n"}) {
+    EXPECT_NE(refusal_of(hostile), "") << hostile;
+  }
+}
+
+/// A text of a new key is refused until somebody decides: here, or in page_file.cpp.
+TEST(PageFile, EachTextThatCanNameAFileOrAProgramIsRefused) {
+  const std::set<std::string> kRefused = {
+      "json.ca_file",       "json.headers_file",  "line.file",         "line.request",       "microphone.worker",
+      "modbus.profile_dir", "mqtt.ca_file",       "mqtt.password_env", "mqtt.password_file", "nmea.file",
+      "nmea.request",       "nmea2000.file",      "nmea2000.request",  "signalk.file",       "signalk.request",
+      "signalk.token_env",  "signalk.token_file", "windlog.file",      "windlog.sensor",     "windlog.start",
+      "windlog.utc_offset"};
+  std::set<std::string> refused;
+  for (const auto* driver : drivers::sensor::driver_table()) {
+    for (const Parameter& key : driver->parameters) {
+      if (!is_free_text(key)) continue;
+      const std::string name = fmt::format("{}.{}", driver->name, key.name);
+      if (!page_refusal(*driver, key)) continue;
+      refused.insert(name);
+      EXPECT_THAT(refusal_of(page_with(driver->name, key.name, "a")), HasSubstr(std::string(key.name))) << name;
+    }
+  }
+  EXPECT_EQ(refused, kRefused);
+}
+
+TEST(PageFile, NoKeyWhoseNameOrHelpSpeaksOfAFileIsTakenAsItIs) {
+  for (const auto* driver : drivers::sensor::driver_table()) {
+    for (const Parameter& key : driver->parameters) {
+      const std::string name(key.name);
+      const bool is_suspect = key.is_secret_file || key.takes_control_characters || name.find("file") != name.npos ||
+                              name.find("dir") == 0 || name.find("device") != name.npos ||
+                              name.find("env") != name.npos;
+      const bool is_harmless = driver->name == "microphone" || name.starts_with("direction");
+      if (!is_free_text(key) || !is_suspect || (is_harmless && name != "direction_device")) continue;
+      EXPECT_THAT(refusal_of(page_with(driver->name, key.name, "/etc/passwd")), HasSubstr(name)) << driver->name;
+    }
+  }
+}
+
+TEST(PageFile, ASerialPortIsADevice_AndAProfileAName) {
+  EXPECT_THAT(refusal_of(page_with("hid", "path", "/etc/passwd")), HasSubstr("must be a device in /dev"));
+  EXPECT_THAT(refusal_of(page_with("nmea", "device", "/dev/../etc/passwd")), HasSubstr("must be a device in /dev"));
+  EXPECT_THAT(refusal_of(page_with("modbus", "profile", "/tmp/mine.toml")), HasSubstr("must be a name"));
+  EXPECT_THAT(refusal_of(page_with("modbus", "profile", "mine.toml")), HasSubstr("must be a name"));
+  EXPECT_EQ(refusal_of(page_with("nmea", "device", "/dev/serial/by-id/usb-FTDI")), "");
+}
+
+TEST(PageFile, TheDeviceOfAnotherSensorIsRefused) {
+  const Config config = parse_config(kRoof, "a.toml");
+  std::string same = kRoof;
+  same.replace(same.find("roof"), 4, "mast");
+  EXPECT_THAT(refusal_of(same, config), HasSubstr("sensors \"roof\" and \"mast\" both"));
+}
+
+TEST(PageFile, ASensorIsWrittenAndTakenOutAgain) {
+  const PageSensor roof{.name = "\"roof\"\n[http]",
+                        .driver = "nmea",
+                        .values = {{"transport", "tcp"}, {"host", "::1"}, {"port", "4001"}, {"x]\n[http", "1"}}};
+  EXPECT_THAT(refusal_of(with_sensor("", roof)), HasSubstr("page.toml"));
+  PageSensor sound = roof;
+  sound.name = "roof";
+  sound.values.pop_back();
+  const std::string one = with_sensor("", sound);
+  sound.name = "mast \"2\"";
+  sound.values.back().second = "4002";
+  const std::string two = with_sensor(one, sound);
+  EXPECT_EQ(refusal_of(two), "");
+  EXPECT_THAT(*sensors_in(two), ElementsAre("roof", "mast \"2\""));
+  const std::string rest = *without_sensor(two, "roof");
+  EXPECT_THAT(names_in(with_page(default_config(), rest, "page.toml")), ElementsAre("mast \"2\""));
+  EXPECT_THAT(*sensors_in(*without_sensor(rest, "mast \"2\"")), IsEmpty());
+  EXPECT_FALSE(without_sensor(two, "nobody"));
+  EXPECT_FALSE(without_sensor("[[", "roof"));
+}
+
+class PageFileOfAnInstallation : public testing::Test {
+ protected:
+  PageFileOfAnInstallation() {
+    unsetenv("STATE_DIRECTORY");
+    write(config_,
+          "[[sensor]]\nname = \"mast\"\ndriver = \"nmea\"\ntransport = \"tcp\"\nhost = \"::1\"\nport = 4002\n");
+  }
+
+  static void write(const std::filesystem::path& file, std::string_view text) {
+    std::ofstream(file, std::ios::binary) << text;
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path config_ = folder_ / "a.toml";
+  std::filesystem::path page_ = folder_ / "a.toml.page.toml";
+};
+
+TEST_F(PageFileOfAnInstallation, IsReadAfterTheConfiguration) {
+  EXPECT_THAT(names_in(load_installation(config_)), ElementsAre("mast"));
+  write(page_, kRoof);
+  const Config both = load_installation(config_);
+  EXPECT_THAT(names_in(both), ElementsAre("mast", "roof"));
+  EXPECT_EQ(both.page_trouble, "");
+  EXPECT_EQ(both.page_file, page_.string());
+  EXPECT_THAT(both.sensors.back().origin, StartsWith(page_.string() + ":1:1"));
+}
+
+/// The configuration alone runs.
+TEST_F(PageFileOfAnInstallation, IsLeftOutIfItIsDamaged_AndThatIsSaid) {
+  const auto is_left_out = [this](std::string_view text) {
+    write(page_, text);
+    const Config config = load_installation(config_);
+    EXPECT_THAT(names_in(config), ElementsAre("mast"));
+    EXPECT_THAT(config.page_trouble, HasSubstr("a.toml.page.toml:")) << text.substr(0, 80);
+    EXPECT_THAT(plan_reload(load_config(config_), config, true).applied, ElementsAre("the page's file is left out"));
+  };
+  is_left_out("[[sensor");
+  is_left_out(std::string_view("\0\xff\xfe", 3));
+  is_left_out(std::string(kMaxPage_bytes + 1, '#'));
+  is_left_out("[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n");
+  is_left_out("[[sensor]]\nname = \"same\"\ndriver = \"nmea\"\ntransport = \"tcp\"\nhost = \"::1\"\nport = 4002\n");
+  is_left_out("[[sensor]]\ndriver = \"line\"\ntransport = \"file\"\nfile = \"/etc/passwd\"\n");
+  std::filesystem::remove(page_);
+  std::filesystem::create_directory(page_);
+  EXPECT_THAT(load_installation(config_).page_trouble, HasSubstr("a.toml.page.toml:1:1: file:"));
+}
+
+/// It stands in a file of its owner alone.
+TEST_F(PageFileOfAnInstallation, APasswordInItDoesNotMakeTheConfigurationASecret) {
+  write(page_, "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"wind\"\npassword = \"correct horse\"\n");
+  const Config config = load_installation(config_);
+  ASSERT_EQ(config.page_trouble, "");
+  EXPECT_THAT(exposed_secrets(config, config_), IsEmpty());
+}
+
+TEST_F(PageFileOfAnInstallation, AMistakeOfTheConfigurationIsNotItsFault) {
+  write(page_, kRoof);
+  write(config_, "[[sensor]]\ndriver = \"nmea\"\nport = 0\n");
+  EXPECT_THROW(load_installation(config_), ConfigError);
+}
+
+TEST_F(PageFileOfAnInstallation, OfTheServiceIsInTheFolderOfItsUnit) {
+  EXPECT_EQ(page_file("/etc/yuragi/yuragi.toml"), "/var/lib/yuragi/page.toml");
+  EXPECT_EQ(page_file(config_), page_);
+  EXPECT_EQ(page_file(""), "");
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::settings
