@@ -5,6 +5,7 @@ import { Status } from "./status";
 const ASK_EVERY_MS = 500;
 const TRY_AGAIN_AFTER_MS = 500;
 const USELESS_FOR_MS = 2000; // of a stream for which there was no use
+const POLICY_ERROR = 1008; // of RFC 6455, 7.4.1
 const SILENCE_MS = 2500; // of a WebSocket that sends twice a second
 
 export interface Listener {
@@ -29,6 +30,8 @@ export interface Stream {
   begin(): Promise<boolean>;
   /** Takes a message. Returns false if the connection is of no use. */
   take(message: ArrayBuffer): boolean;
+  /** The daemon does not send what was wished, for this reason. */
+  refused(why: string): void;
 }
 
 const after = (time_ms: number) => new Promise((resolve) => setTimeout(resolve, time_ms));
@@ -57,8 +60,9 @@ function hear(listener: Listener, stream?: Stream): Promise<boolean> {
     document.addEventListener("visibilitychange", rest);
     let silence = setTimeout(end, SILENCE_MS);
     socket.onopen = () => socket.send(JSON.stringify({ status: 2, ...(stream && { stream: stream.wish }) }));
-    socket.onclose = () => {
+    socket.onclose = (event) => {
       clearTimeout(silence);
+      if (event.code === POLICY_ERROR) stream?.refused(event.reason);
       end();
     };
     socket.onmessage = (message) => {

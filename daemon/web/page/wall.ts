@@ -22,6 +22,7 @@ let knowledge: Knowledge = { kind: "connecting" };
 let heard_ms = 0; // when the last status came, by performance.now()
 let heard_at = new Date();
 let trouble: Trouble | null = null;
+let refusal = ""; // of the stream
 
 function words_of(what: Trouble): string {
   if (what === "no program") return texts.wall_no_program;
@@ -38,7 +39,7 @@ function show_words(): void {
   }
   const verdict = verdict_of(knowledge);
   const is_live = verdict.light === "live" || verdict.light === "attention";
-  const text = trouble !== null ? words_of(trouble) : is_live ? "" : verdict.text;
+  const text = trouble !== null ? words_of(trouble) : refusal || (is_live ? "" : verdict.text);
   const notice = by_id("notice");
   notice.hidden = text === "" || !has_words;
   set_text(notice, text);
@@ -90,7 +91,18 @@ void listen({
     if (knowledge.kind !== "lost") knowledge = { kind: "lost", since: heard_at };
     show_words();
   },
-}, { wish, begin: () => viewer.open(), take: (message) => viewer.take(message) });
+}, {
+  wish,
+  begin: () => viewer.open(),
+  take(message) {
+    refusal = "";
+    return viewer.take(message);
+  },
+  refused(why) {
+    refusal = why;
+    show_words();
+  },
+});
 
 // For tests, and people who look.
 Object.assign(window, { wall: { get pictures() { return viewer.pictures; }, get pace() { return viewer.pace; } } });
