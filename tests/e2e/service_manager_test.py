@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 import unittest
+import urllib.request
 
 from programs import HANG_S, Program
 
@@ -110,6 +111,27 @@ class ServiceManagerTest(unittest.TestCase):
                         daemon.wait_for(said)
                         self.assertEqual(daemon.end(), 0)
                         manager.wait_for("STOPPING")
+
+    def test_it_stays_the_same_process_and_does_not_stop_when_the_page_adds_a_sensor(self):
+        with ServiceManager() as manager, tempfile.TemporaryDirectory() as folder:
+            config, token = os.path.join(folder, "wall.toml"), os.path.join(folder, "token")
+            with open(config, "w", encoding="utf-8") as out:
+                out.write(f'[http]\nlisten = "127.0.0.1:0"\ntoken_file = "{token}"\n')
+            with open(token, "w", encoding="ascii") as out:
+                out.write("correct horse battery staple\n")
+            with Program(YURAGI, "run", "--config", config, "--listen", "127.0.0.1:0", env=manager.environment(STATE_DIRECTORY=folder)) as daemon:
+                manager.wait_for("READY")
+                base = daemon.wait_for(r"answering at (http://\S+)").group(1)
+                body = b'{"name": "roof", "driver": "synthetic"}'
+                fields = {"Content-Type": "application/json", "Authorization": "Bearer correct horse battery staple"}
+                with urllib.request.urlopen(urllib.request.Request(base + "/api/v1/sensors", body, fields), timeout=HANG_S) as answer:
+                    self.assertEqual(answer.status, 200)
+                self.assertTrue(os.path.exists(os.path.join(folder, "page.toml")))
+                again = manager.wait_for("RELOADING") + manager.wait_for("READY")
+                self.assertNotIn("STOPPING", {key for message in again for key in message})
+                daemon.wait_for("sensor roof: simulated")
+                self.assertEqual(daemon.end(), 0)
+                manager.wait_for("STOPPING")
 
     def test_record_is_ready_without_frames(self):
         with ServiceManager() as manager, tempfile.TemporaryDirectory() as folder:
