@@ -21,7 +21,7 @@ namespace yuragi::daemon::web {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Pair;
@@ -54,11 +54,11 @@ class ArchiveTest : public testing::Test {
                    [&](http::Response response) { answered.set_value(std::move(response)); });
     return answered.get_future().get();
   }
-  static json ended(Archive& archive, const http::Response& started) {
+  static Json ended(Archive& archive, const http::Response& started) {
     EXPECT_EQ(started.status, 202U) << started.body;
-    const std::string id = json::parse(started.body)["id"];
+    const std::string id = Json::parse(started.body)["id"];
     while (true) {
-      json job = json::parse(ask(archive, What::kJob, id).body);
+      Json job = Json::parse(ask(archive, What::kJob, id).body);
       if (job["state"] != "running") return job;
       std::this_thread::yield();
     }
@@ -77,7 +77,7 @@ class ArchiveTest : public testing::Test {
 
 TEST_F(ArchiveTest, ListsTheFilesOfTheRecording_AndNothingElse) {
   Archive archive(settings());
-  const json list = json::parse(ask(archive, What::kList).body)["recordings"];
+  const Json list = Json::parse(ask(archive, What::kList).body)["recordings"];
   ASSERT_EQ(list.size(), 3U);
   EXPECT_EQ(list[0]["name"], "wall.windlog");
   EXPECT_EQ(list[0]["is_written"], true);
@@ -90,7 +90,7 @@ TEST_F(ArchiveTest, ListsTheFilesOfTheRecording_AndNothingElse) {
 
 TEST_F(ArchiveTest, ADaemonThatRecordsNothing_HasNone) {
   Archive archive({});
-  EXPECT_EQ(json::parse(ask(archive, What::kList).body)["recordings"], json::array());
+  EXPECT_EQ(Json::parse(ask(archive, What::kList).body)["recordings"], Json::array());
   for (const What what : {What::kDownload, What::kVerify, What::kConfiguration})
     EXPECT_EQ(ask(archive, what, "").status, 404U);
 }
@@ -131,7 +131,7 @@ TEST_F(ArchiveTest, TheFileThatIsWritten_IsCopied) {
   const http::Response refusal = ask(archive, What::kDownload, "wall.windlog");
   EXPECT_EQ(refusal.status, 409U);
   EXPECT_THAT(refusal.body, HasSubstr("/api/v1/recordings/wall.windlog/copy"));
-  const json job = ended(archive, ask(archive, What::kCopy, "wall.windlog"));
+  const Json job = ended(archive, ask(archive, What::kCopy, "wall.windlog"));
   EXPECT_EQ(job["file"]["name"], "wall.windlog") << job;
   EXPECT_EQ(text_of(ask(archive, What::kJobFile, job["id"])), "copy");
   EXPECT_FALSE(fs::exists(folder_.path() / ".wall.windlog-copy"));
@@ -146,7 +146,7 @@ TEST_F(ArchiveTest, ACopyThatLeavesTooLittleRoom_IsRefused) {
 
 TEST_F(ArchiveTest, JobsGetTheFile_AndTheirResultsNameNoFolder) {
   Archive archive(settings("printf '{\"called\": \"%s\"}' \"$*\"; exit 1"));
-  const json job = ended(archive, ask(archive, What::kVerify, kPart));
+  const Json job = ended(archive, ask(archive, What::kVerify, kPart));
   EXPECT_EQ(job["state"], "done") << "damage is a finding";
   EXPECT_EQ(job["result"]["called"], "verify " + std::string(kPart) + " --json");
   EXPECT_EQ(ask(archive, What::kJobFile, job["id"]).status, 404U);
@@ -155,7 +155,7 @@ TEST_F(ArchiveTest, JobsGetTheFile_AndTheirResultsNameNoFolder) {
 
 TEST_F(ArchiveTest, AReport_IsShownWithoutScripts) {
   Archive archive(settings("for file; do :; done; printf '<html>' > \"$file\""));
-  const json job = ended(archive, ask(archive, What::kReport, kPart));
+  const Json job = ended(archive, ask(archive, What::kReport, kPart));
   const http::Response page = ask(archive, What::kJobFile, job["id"]);
   EXPECT_EQ(page.content_type, "text/html; charset=utf-8");
   EXPECT_THAT(page.fields, Contains(Pair("Content-Security-Policy", HasSubstr("sandbox"))));
@@ -164,13 +164,13 @@ TEST_F(ArchiveTest, AReport_IsShownWithoutScripts) {
 
 TEST_F(ArchiveTest, TheConfiguration_WithItsFindings) {
   Archive sound(settings("printf '{\"http\": {}}'; echo 'warning: others can read it' >&2"));
-  const json found = json::parse(ask(sound, What::kConfiguration).body);
-  EXPECT_EQ(found, json({{"file", "wall.toml"},
+  const Json found = Json::parse(ask(sound, What::kConfiguration).body);
+  EXPECT_EQ(found, Json({{"file", "wall.toml"},
                          {"is_valid", true},
                          {"findings", {"warning: others can read it"}},
-                         {"configuration", {{"http", json::object()}}}}));
+                         {"configuration", {{"http", Json::object()}}}}));
   Archive mistaken(settings("echo 'wall.toml:3:1: hight: is not known' >&2; exit 78"));
-  const json refused = json::parse(ask(mistaken, What::kConfiguration).body);
+  const Json refused = Json::parse(ask(mistaken, What::kConfiguration).body);
   EXPECT_EQ(refused["is_valid"], false);
   EXPECT_EQ(refused["configuration"], nullptr);
   EXPECT_EQ(refused["findings"][0], "wall.toml:3:1: hight: is not known");
