@@ -5,7 +5,7 @@ import { createRequire } from "node:module";
 import os from "node:os";
 import path from "node:path";
 
-export const HANG_MS = 60_000; // reached only by what hangs
+export const HANG_MS = 120_000; // reached only by what hangs
 
 /** `tools`: the folder with playwright-core; `programs`: that of ours. */
 export async function begin({ chromiumPath, programs, tools }) {

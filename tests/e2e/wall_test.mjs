@@ -10,9 +10,10 @@ import { begin, HANG_MS } from "./chromium.mjs";
 
 const [chromiumPath, programs, tools, screenshots, garden, ...ports] = process.argv.slice(2);
 const [httpPort, streamPort, sensorPort, livePort] = ports;
-/** Pictures that differ by less look the same. In the garden fire, water and the sleeping animal move in still air, too. */
-const LEAST_DB = { garden: 36, meadow: 45, cherry: 45 };
-const TEST_MS = 4 * HANG_MS;
+/** Pictures that differ by less look the same. In still air fire, water, the sleeping animal and petals move, too: the longer a
+    machine takes from the desktop's picture to the browser's, the more (garden 40 to 50 dB, cherry 48 to 67). */
+const LEAST_DB = { garden: 36, meadow: 45, cherry: 36 };
+const TEST_MS = 10 * HANG_MS;
 const STILL_AIR = `
 [wind]
 default_speed = 0.0
