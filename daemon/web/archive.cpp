@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -105,23 +104,6 @@ ordered_json job_json(const Job& job, const fs::path& recording) {
 }
 
 }  // namespace
-
-std::string decoded_name(std::string_view text) {
-  std::string name;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
-      name += text[i];
-      continue;
-    }
-    unsigned byte = 0;
-    const std::string_view digits = text.substr(i + 1, 2);
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
-    if (digits.size() != 2 || error != std::errc() || end != digits.data() + 2) return {};
-    name += static_cast<char>(byte);
-    i += 2;
-  }
-  return name;
-}
 
 /// With the thread, which ends by itself if a disk hangs when the daemon ends.
 struct Archive::Shared {

@@ -51,10 +51,6 @@ struct ArchiveRequest {
   settings::PageSensor sensor = {};  ///< to try or to add; hostile
 };
 
-/// Decodes the %XX of a name in a path (RFC 3986, 2.1). Returns an empty text, which is no name, if one is damaged.
-/// Pure.
-std::string decoded_name(std::string_view text);
-
 /// The daemon's files for those who may change something: its recordings, its configuration, and jobs about them
 /// (Jobs). Each request is answered on a thread of its own, so that a disk that hangs delays no other answer.
 /// Thread-safe: no.

@@ -90,11 +90,7 @@ std::optional<http::Response> InstalledFiles::answer(const http::Request& reques
     response.fields.emplace_back("Content-Encoding", encoding.name);
     break;
   }
-  response.fields.emplace_back("ETag", file->entity_tag);
-  if (request.if_none_match == file->entity_tag)
-    response.status = 304;
-  else
-    response.body = file->text;
+  put_file(response, request, file->entity_tag, file->text);
   return response;
 }
 

@@ -27,6 +27,15 @@ http::Response page_response(std::string_view content_type, PageNeeds needs) {
                                   scripts)}}};
 }
 
+void put_file(http::Response& response, const http::Request& request, std::string_view entity_tag,
+              std::string_view text) {
+  response.fields.emplace_back("ETag", entity_tag);
+  if (request.if_none_match == entity_tag)
+    response.status = 304;
+  else
+    response.body = text;
+}
+
 std::optional<http::Response> page_answer(const http::Request& request) {
   if (request.method != "GET" && request.method != "HEAD") return std::nullopt;
   const std::span<const PageFile> files = page_files();
@@ -34,11 +43,7 @@ std::optional<http::Response> page_answer(const http::Request& request) {
   if (file == files.end()) return std::nullopt;
   http::Response response =
       page_response(file->content_type, file->path == kPictureAlone ? PageNeeds::kWasm : PageNeeds::kScript);
-  response.fields.emplace_back("ETag", file->entity_tag);
-  if (request.if_none_match == file->entity_tag)
-    response.status = 304;
-  else
-    response.body = file->text;
+  put_file(response, request, file->entity_tag, file->text);
   return response;
 }
 

@@ -30,6 +30,11 @@ enum class PageNeeds {
 /// style within a page's text (W3C, Content Security Policy Level 3).
 http::Response page_response(std::string_view content_type, PageNeeds needs);
 
+/// Puts a file into the answer to a request, or, if the browser has it already by its entity tag, 304 (RFC
+/// 9110, 13.1.2).
+void put_file(http::Response& response, const http::Request& request, std::string_view entity_tag,
+              std::string_view text);
+
 /// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nullopt: it asks for
 /// something else. The files are the same for everybody and hold no secret. Pure.
 std::optional<http::Response> page_answer(const http::Request& request);

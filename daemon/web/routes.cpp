@@ -237,7 +237,7 @@ using What = ArchiveRequest::What;
 constexpr std::string_view kRecordings = "/api/v1/recordings";
 constexpr std::string_view kSensors = "/api/v1/sensors";
 
-/// The name in /api/v1/recordings/NAME/verify; empty if the path has none.
+/// The name in /api/v1/recordings/NAME/verify; empty if the path has none, or a damaged one.
 std::string name_in(std::string_view path) {
   constexpr std::size_t kPlace = 3;  // behind "", "api", "v1" and the kind
   for (std::size_t i = 0; i <= kPlace; ++i) {
@@ -245,7 +245,7 @@ std::string name_in(std::string_view path) {
     if (slash == std::string_view::npos) return {};
     path.remove_prefix(slash + 1);
   }
-  return decoded_name(path.substr(0, path.find('/')));
+  return path_decoded(path.substr(0, path.find('/'))).value_or("");
 }
 
 template <What kWhat>

@@ -1,7 +1,6 @@
 #include "daemon/web/site.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -15,6 +14,7 @@
 
 #include "daemon/web/media_type.hpp"
 #include "daemon/web/problem.hpp"
+#include "daemon/web/query.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/platform/whole_file.hpp"
 
@@ -28,24 +28,6 @@ constexpr const char* kPolicy =
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src 'self' data: "
     "blob:; font-src 'self' data:; media-src 'self' blob:; worker-src 'self' blob:; base-uri 'none'; form-action "
     "'none'; frame-ancestors 'self'";
-
-/// A path with its %XX decoded (RFC 3986, 2.1); nullopt: there is a damaged one, or one of a zero.
-std::optional<std::string> decoded(std::string_view path) {
-  std::string text;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    if (path[i] != '%') {
-      text += path[i];
-      continue;
-    }
-    unsigned byte = 0;
-    const std::string_view digits = path.substr(i + 1, 2);
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
-    if (digits.size() != 2 || error != std::errc() || end != digits.data() + 2 || byte == 0) return std::nullopt;
-    text += static_cast<char>(byte);
-    i += 2;
-  }
-  return text;
-}
 
 /// Without names that begin with a dot: "..", and what people hide.
 bool is_plain(const fs::path& path) {
@@ -75,7 +57,7 @@ http::Response site_response(const fs::path& folder, const http::Request& reques
     return http::Response{.status = 301, .fields = {{"Location", request.path + "/"}}};
   };
   if (request.path.size() < kSitePath.size()) return redirection();
-  const auto name = decoded(std::string_view(request.path).substr(kSitePath.size()));
+  const auto name = path_decoded(std::string_view(request.path).substr(kSitePath.size()));
   if (!name || name->starts_with('/') || !is_plain(*name)) return not_found(request);
   std::error_code error;
   const fs::path root = fs::canonical(folder, error);

@@ -1,8 +1,9 @@
 // The files of the daemon's recording: to download, to verify, and for a report. For those who may change something.
 import { Change } from "./change";
-import { element, Rows, set_text, set_text_in } from "./element";
+import { element, Rows, set_text } from "./element";
 import { carry_out, download } from "./job";
-import { ask, Refused } from "./request";
+import { PrivatePart } from "./private_part";
+import { ask } from "./request";
 import { Recording, Verification } from "./status";
 import { DAEMON_LANGUAGE, language, texts } from "./texts";
 import { bytes_text, date_text, plain_number_text } from "./wording";
@@ -17,38 +18,26 @@ interface Row {
 
 export class ArchiveView {
   private readonly rows: Rows<Row>;
+  private readonly part: PrivatePart;
 
   constructor(
     private readonly details: HTMLDetailsElement,
-    private readonly note: HTMLElement,
-    private readonly list: HTMLElement,
+    note: HTMLElement,
+    list: HTMLElement,
     private readonly change: Change,
   ) {
+    this.part = new PrivatePart(note, list, texts.archive_unpaired);
     this.rows = new Rows(list, (name) => this.make_row(name), texts.nothing_recorded_ever);
     details.addEventListener("toggle", () => this.ask_now());
     setInterval(() => this.ask_now(), ASK_EVERY_MS);
   }
 
   ask_now(): void {
-    if (this.details.open) void this.load();
-  }
-
-  private async load(): Promise<void> {
-    try {
-      const { recordings } = await ask<{ recordings: Recording[] }>(PATH);
-      this.say("");
+    if (!this.details.open) return;
+    void this.part.load(ask<{ recordings: Recording[] }>(PATH), ({ recordings }) => {
       this.show(recordings);
-    } catch (error) {
-      if (!(error instanceof Refused)) return; // the link shows what is wrong
-      if (error.status === 401) this.say(texts.archive_unpaired);
-      else this.say(error.message, DAEMON_LANGUAGE);
-    }
-  }
-
-  private say(text: string, lang = language): void {
-    set_text_in(lang, this.note, text);
-    this.note.hidden = text === "";
-    this.list.hidden = text !== "";
+      return "";
+    });
   }
 
   private show(recordings: Recording[]): void {

@@ -1,43 +1,33 @@
 // The last lines of the daemon's log, while they are visible.
-import { element, set_text_in } from "./element";
-import { ask, Refused } from "./request";
+import { element } from "./element";
+import { PrivatePart } from "./private_part";
+import { ask } from "./request";
 import { LogLine } from "./status";
-import { DAEMON_LANGUAGE, language, texts } from "./texts";
+import { DAEMON_LANGUAGE, texts } from "./texts";
 import { clock_text } from "./wording";
 
 const ASK_EVERY_MS = 5000;
 const QUIET = ["trace", "debug", "info"];
 
 export class LogView {
+  private readonly part: PrivatePart;
+
   constructor(
     private readonly details: HTMLDetailsElement,
-    private readonly note: HTMLElement,
+    note: HTMLElement,
     private readonly list: HTMLElement,
   ) {
+    this.part = new PrivatePart(note, list, texts.log_unpaired);
     details.addEventListener("toggle", () => this.ask_now());
     setInterval(() => this.ask_now(), ASK_EVERY_MS);
   }
 
   ask_now(): void {
-    if (this.details.open) void this.load();
-  }
-
-  private async load(): Promise<void> {
-    try {
-      const { lines } = await ask<{ lines: LogLine[] }>("/api/v1/log?lines=200");
-      this.say(lines.length > 0 ? "" : texts.log_empty);
+    if (!this.details.open) return;
+    void this.part.load(ask<{ lines: LogLine[] }>("/api/v1/log?lines=200"), ({ lines }) => {
       this.show(lines);
-    } catch (error) {
-      if (!(error instanceof Refused)) return; // the link shows what is wrong
-      if (error.status === 401) this.say(texts.log_unpaired);
-      else this.say(error.message, DAEMON_LANGUAGE);
-    }
-  }
-
-  private say(text: string, lang = language): void {
-    set_text_in(lang, this.note, text);
-    this.note.hidden = text === "";
-    this.list.hidden = text !== "";
+      return lines.length > 0 ? "" : texts.log_empty;
+    });
   }
 
   private show(lines: LogLine[]): void {

@@ -2,7 +2,8 @@
 import { Change } from "./change";
 import { element, set_text_in } from "./element";
 import { carry_out, download } from "./job";
-import { ask, Refused } from "./request";
+import { PrivatePart } from "./private_part";
+import { ask } from "./request";
 import { Configuration } from "./status";
 import { DAEMON_LANGUAGE, language, texts } from "./texts";
 
@@ -16,6 +17,7 @@ export class SupportView {
   private readonly values = element("dl", { class: "facts configuration", lang: DAEMON_LANGUAGE, tabindex: "0", "aria-label": texts.configuration });
   private readonly configuration = element("div", { hidden: "" }, this.findings,
     element("label", { for: "configuration-filter" }, texts.filter), this.filter, this.values);
+  private readonly part = new PrivatePart(this.note, this.configuration, texts.configuration_unpaired);
 
   constructor(private readonly details: HTMLDetailsElement, private readonly change: Change) {
     const bundle = element("button", { type: "button" }, texts.make_bundle);
@@ -28,13 +30,12 @@ export class SupportView {
     this.filter.addEventListener("input", () => this.apply_filter());
     details.append(element("p", { class: "empty" }, texts.bundle_help), element("div", { class: "buttons" }, bundle), this.progress,
       element("h3", {}, texts.configuration), this.note, this.configuration);
-    details.addEventListener("toggle", () => {
-      if (details.open) void this.load();
-    });
+    details.addEventListener("toggle", () => this.ask_now());
   }
 
   ask_now(): void {
-    if (this.details.open) void this.load();
+    if (!this.details.open) return;
+    void this.part.load(ask<Configuration>("/api/v1/configuration", undefined, PATIENCE_MS), (reply) => this.show(reply));
   }
 
   private async make_bundle(): Promise<void> {
@@ -46,26 +47,13 @@ export class SupportView {
     download(job.file.path, job.file.name);
   }
 
-  private async load(): Promise<void> {
-    try {
-      const { findings, configuration } = await ask<Configuration>("/api/v1/configuration", undefined, PATIENCE_MS);
-      this.say("");
-      this.findings.replaceChildren(...findings.map((finding) => element("li", {}, finding)));
-      this.values.replaceChildren(...lines_of(configuration).map(([key, value]) =>
-        element("div", {}, element("dt", {}, key), element("dd", {}, value))));
-      this.values.hidden = configuration === null;
-      this.apply_filter();
-    } catch (error) {
-      if (!(error instanceof Refused)) return; // the link shows what is wrong
-      if (error.status === 401) this.say(texts.configuration_unpaired);
-      else this.say(error.message, DAEMON_LANGUAGE);
-    }
-  }
-
-  private say(text: string, lang = language): void {
-    set_text_in(lang, this.note, text);
-    this.note.hidden = text === "";
-    this.configuration.hidden = text !== "";
+  private show({ findings, configuration }: Configuration): string {
+    this.findings.replaceChildren(...findings.map((finding) => element("li", {}, finding)));
+    this.values.replaceChildren(...lines_of(configuration).map(([key, value]) =>
+      element("div", {}, element("dt", {}, key), element("dd", {}, value))));
+    this.values.hidden = configuration === null;
+    this.apply_filter();
+    return "";
   }
 
   private apply_filter(): void {

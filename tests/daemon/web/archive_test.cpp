@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "daemon/http/file_body.hpp"
+#include "daemon/web/query.hpp"
 #include "daemon/web/recording_list.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -176,9 +177,9 @@ TEST_F(ArchiveTest, TheConfiguration_WithItsFindings) {
   EXPECT_EQ(refused["findings"][0], "wall.toml:3:1: hight: is not known");
 }
 
-TEST(DecodedName, DamagedOnesAreEmpty) {
-  EXPECT_EQ(decoded_name("wall%20of%2Flight.windlog"), "wall of/light.windlog");
-  for (const char* damaged : {"%", "%2", "%zz", "a%+1"}) EXPECT_EQ(decoded_name(damaged), "") << damaged;
+TEST(PathDecoded, IsNothingForDamagedOnes) {
+  EXPECT_EQ(path_decoded("wall%20of%2Flight.windlog"), "wall of/light.windlog");
+  for (const char* damaged : {"%", "%2", "%zz", "a%+1"}) EXPECT_EQ(path_decoded(damaged), std::nullopt) << damaged;
 }
 
 }  // namespace
