@@ -1,10 +1,8 @@
 # How the project's own targets are declared. A room (ARCHITECTURE.md) is a library: engine/wind is yuragi_engine_wind.
 
-# What one clone has compiled, another finds: no command line and no debug information has the path of a clone.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
-                                  CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PROJECT_SOURCE_DIR}/config/cmake/compile_cached.sh ${PROJECT_SOURCE_DIR})
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
@@ -394,6 +392,8 @@ function(yuragi_precompile_headers)
   set(headers <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <deque> <filesystem> <fstream> <functional> <map>
     <memory> <mutex> <numeric> <optional> <random> <ranges> <set> <span> <sstream> <string> <thread> <tuple> <unordered_map> <utility>
     <variant> <vector> <fmt/format.h> <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
+  find_file(YURAGI_GMOCK_HEADER gmock/gmock.h)
+  set_source_files_properties(${YURAGI_GMOCK_HEADER} PROPERTIES LANGUAGE CXX)
   set(empty ${PROJECT_BINARY_DIR}/empty.cpp)
   file(CONFIGURE OUTPUT ${empty} CONTENT "")
   set(kinds "")
@@ -404,7 +404,8 @@ function(yuragi_precompile_headers)
     get_target_property(sources ${target} SOURCES)
     list(FILTER sources INCLUDE REGEX "\\.(cpp|cc)$")
     get_target_property(linked ${target} LINK_LIBRARIES)
-    if(NOT type MATCHES "STATIC_LIBRARY|EXECUTABLE" OR NOT sources OR NOT linked MATCHES "yuragi_") # by which it has yuragi_flags
+    get_target_property(disabled ${target} DISABLE_PRECOMPILE_HEADERS)
+    if(disabled OR NOT type MATCHES "STATIC_LIBRARY|EXECUTABLE" OR NOT sources OR NOT linked MATCHES "yuragi_") # by which it has yuragi_flags
       continue()
     endif()
     if(NOT options)
@@ -431,13 +432,31 @@ function(yuragi_precompile_headers)
     if(count LESS 4)
       continue() # it would take longer than it saves
     endif()
-    add_library(${kind} OBJECT EXCLUDE_FROM_ALL ${empty})
+    # By clang a header of a library, after which the others are read: what is precompiled names all files that it is made of, and
+    # those of a clone are not found from another.
+    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+      set(source ${YURAGI_GMOCK_HEADER})
+    else()
+      set(source ${empty})
+    endif()
+    add_library(${kind} OBJECT EXCLUDE_FROM_ALL ${source})
     if(kind MATCHES EXECUTABLE)
       list(APPEND ${kind}_options -fPIE) # libraries have -fPIC
       set_target_properties(${kind} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
     endif()
     target_link_libraries(${kind} PRIVATE yuragi_flags GTest::gtest nlohmann_json::nlohmann_json fmt::fmt) # with their definitions
     set_target_properties(${kind} PROPERTIES COMPILE_OPTIONS "${${kind}_options}")
+    if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+      list(TRANSFORM headers REPLACE "^<(.*)>$" "SHELL:-include \\1" OUTPUT_VARIABLE included)
+      target_compile_options(${kind} PRIVATE ${included} "SHELL:-x c++-header" "SHELL:-Xclang -fno-pch-timestamp")
+      set_target_properties(${kind} PROPERTIES UNITY_BUILD OFF)
+      add_custom_target(${kind}_ready DEPENDS $<TARGET_OBJECTS:${kind}>)
+      foreach(target IN LISTS ${kind})
+        target_compile_options(${target} PRIVATE "SHELL:$<$<COMPILE_LANGUAGE:CXX>:-include-pch CMakeFiles/${kind}.dir${YURAGI_GMOCK_HEADER}.o>")
+        add_dependencies(${target} ${kind}_ready)
+      endforeach()
+      continue()
+    endif()
     target_precompile_headers(${kind} PRIVATE ${headers})
     foreach(target IN LISTS ${kind})
       target_precompile_headers(${target} REUSE_FROM ${kind})
