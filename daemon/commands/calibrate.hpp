@@ -16,4 +16,7 @@ void add_calibrate_microphone(CLI::App& calibrate);
 void add_calibration_request(CLI::App& command, tools::calibration::Request& request,
                              const std::string& default_duration);
 
+/// Adds --json, for a program that leads a person: of those that the page offers.
+void add_calibration_json(CLI::App& command, tools::calibration::Request& request);
+
 }  // namespace yuragi::daemon::commands

@@ -94,9 +94,7 @@ std::vector<wind::judging::TimedSpeed> levels_of(const tools::calibration::Senso
 /// Pairs of mean level and mean true speed, block by block.
 std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::calibration::Session& session,
                                                                         LevelConversion& conversion) {
-  const tools::calibration::CollectedReadings collected = session.collect(
-      "The microphone and the reference must be in the same wind, as close together as possible. Both calm and wind "
-      "are\nneeded: the more the wind varies meanwhile, the better.");
+  const tools::calibration::CollectedReadings collected = session.collect();
   conversion = level_conversion(session, collected[0]);
   const tools::calibration::ReferencePairs beside =
       tools::calibration::pair_with_reference(session, collected, kMicBlock_s);
@@ -131,8 +129,7 @@ std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::c
 /// The mean level in a wind of this speed.
 drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::Session& session, double speed_m_s,
                                                             LevelConversion& conversion) {
-  const tools::calibration::CollectedReadings collected = session.collect(
-      fmt::format("Set the wind at the microphone to a steady {:g} m/s, with no other sound.", speed_m_s));
+  const tools::calibration::CollectedReadings collected = session.collect(speed_m_s);
   conversion = level_conversion(session, collected[0]);
   double sum_db = 0.0;
   const std::vector<wind::judging::TimedSpeed> levels_db = levels_of(collected[0], conversion);
@@ -177,27 +174,27 @@ drivers::decode::microphone::MicCalibration calibration_beside(
   return fit.calibration;
 }
 
-/// The speeds at some levels with the present and the new calibration: the lines of a table.
-std::vector<std::string> level_effect(const tools::calibration::Session& session,
-                                      const drivers::decode::microphone::MicCalibration& then, double noise_power,
-                                      const std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
+/// The speeds at some levels with the present and the new calibration.
+tools::calibration::Effect level_effect(const tools::calibration::Session& session,
+                                        const drivers::decode::microphone::MicCalibration& then, double noise_power,
+                                        const std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   const drivers::decode::microphone::MicCalibration now =
       drivers::microphone::mic_level_settings_of(session.sensor().values).calibration;
   wind::judging::Calibration after = session.calibration();
   after.height_factor = 1.0;
   const auto [softest, loudest] =
       std::ranges::minmax(pairs, {}, &drivers::decode::microphone::MicLevelAndSpeed::level_db);
-  std::vector<std::string> lines = {"    level        speed now        speed then"};
+  tools::calibration::Effect effect{.indicated_unit = "dB", .unit = "m/s"};
   for (int step = 0; step <= 3; ++step) {
     const double level_db = softest.level_db + (loudest.level_db - softest.level_db) * step / 3.0;
     const double power = std::pow(10.0, 0.1 * level_db);
     wind::Reading reading;
     reading.speed_m_s = drivers::decode::microphone::mic_speed_m_s(now, power, noise_power);
-    lines.push_back(fmt::format("{:8.1f} dB        {:8.2f} m/s   {:6.2f} m/s", level_db,
-                                after.applied_to(reading).speed_m_s,
-                                drivers::decode::microphone::mic_speed_m_s(then, power, noise_power)));
+    effect.rows.push_back({.indicated = level_db,
+                           .now = after.applied_to(reading).speed_m_s,
+                           .then = drivers::decode::microphone::mic_speed_m_s(then, power, noise_power)});
   }
-  return lines;
+  return effect;
 }
 
 void calibrate_microphone(const MicrophoneOptions& options) {
@@ -210,11 +207,9 @@ void calibrate_microphone(const MicrophoneOptions& options) {
   if (!options.request.recording.empty() && (has_reference ? parts > 1 : parts != 2)) {
     throw ExitError(kExitUsage, "--part: give one with --reference, or one for each --speed, in the same order");
   }
-  tools::calibration::Session session(options.request, has_reference ? 900.0 : 60.0);
-  if (session.sensor().driver->calibration != drivers::sensor::CalibrationMeans::kSoundLevel) {
-    throw ExitError(kExitUsage,
-                    fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", session.sensor().name));
-  }
+  tools::calibration::Session session(
+      options.request, tools::calibration::way_of("microphone", has_reference ? tools::calibration::Given::kReference
+                                                                              : tools::calibration::Given::kSpeed));
 
   LevelConversion conversion;
   std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs;

@@ -21,10 +21,7 @@ struct NorthOptions {
 
 /// The offset of the vane, by pointing it at a landmark of known bearing.
 double turn_by_landmark(tools::calibration::Session& session, double bearing_deg) {
-  const tools::calibration::CollectedReadings collected = session.collect(
-      fmt::format("Turn the vane so that its tip points to the landmark at {:g} degrees, as if the wind "
-                  "came from there, and hold it\nstill.",
-                  bearing_deg));
+  const tools::calibration::CollectedReadings collected = session.collect(bearing_deg);
   std::vector<double> indicated_deg;
   for (const tools::calibration::TimedReading& one : collected[0].readings) {
     if (one.reading.direction_deg) indicated_deg.push_back(*one.reading.direction_deg);
@@ -51,8 +48,7 @@ std::vector<wind::judging::TimedDirection> directions_of(const tools::calibratio
 
 /// The offset, by comparison with another vane in the same wind.
 double turn_by_reference(tools::calibration::Session& session) {
-  const tools::calibration::CollectedReadings collected =
-      session.collect("Both vanes must be in the same wind, of more than 1 m/s.");
+  const tools::calibration::CollectedReadings collected = session.collect();
   wind::judging::Calibration without_north = session.calibration();
   without_north.north_offset_deg = 0.0;
   const std::vector<double> turns_deg =
@@ -68,7 +64,9 @@ double turn_by_reference(tools::calibration::Session& session) {
 void calibrate_north(NorthOptions options) {
   const bool has_reference = !options.request.reference.empty();
   if (has_reference && options.bearing_deg) throw ExitError(kExitUsage, "give --bearing or --reference, not both");
-  tools::calibration::Session session(options.request, has_reference ? 900.0 : 20.0);
+  tools::calibration::Session session(
+      options.request, tools::calibration::way_of("north", has_reference ? tools::calibration::Given::kReference
+                                                                         : tools::calibration::Given::kBearing));
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
   if (!has_reference && !options.bearing_deg) {
     if (!session.dialog().has_person()) throw ExitError(kExitUsage, "give --bearing DEG or --reference NAME");
@@ -84,12 +82,13 @@ void calibrate_north(NorthOptions options) {
   wind::judging::Calibration now = session.calibration();
   wind::judging::Calibration then = now;
   then.north_offset_deg = north_offset_deg;
-  std::vector<std::string> effect = {"   reading     direction now   direction then"};
+  tools::calibration::Effect effect{.indicated_unit = "deg", .unit = "deg"};
   for (const double indicated_deg : {0.0, 90.0, 180.0, 270.0}) {
     wind::Reading reading;
     reading.direction_deg = indicated_deg;
-    effect.push_back(fmt::format("{:7.0f} deg        {:7.1f} deg     {:7.1f} deg", indicated_deg,
-                                 *now.applied_to(reading).direction_deg, *then.applied_to(reading).direction_deg));
+    effect.rows.push_back({.indicated = indicated_deg,
+                           .now = *now.applied_to(reading).direction_deg,
+                           .then = *then.applied_to(reading).direction_deg});
   }
   session.finish({{"calibration", "north_offset", north_offset_deg}}, effect);
 }
@@ -107,6 +106,7 @@ void add_calibrate_north(CLI::App& calibrate) {
       "  yuragi calibrate north --config wall.toml --sensor roof --reference mast --recording may.windlog");
   auto options = std::make_shared<NorthOptions>();
   add_calibration_request(*command, options->request, "20; with --reference 900");
+  add_calibration_json(*command, options->request);
   command->add_option("--bearing", options->bearing_deg, "of the landmark, clockwise from true north")
       ->type_name("DEG")
       ->check(CLI::Range(0.0, 360.0));

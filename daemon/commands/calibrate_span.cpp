@@ -27,9 +27,7 @@ struct SpanOptions {
 
 /// The indicated speed in a wind of this true speed.
 wind::judging::CalibrationPoint measure_known_speed(tools::calibration::Session& session, double speed_m_s) {
-  const tools::calibration::CollectedReadings collected = session.collect(fmt::format(
-      "Set the wind at the sensor to a steady {:g} m/s: with a fan or a wind tunnel, and an accurate meter next to it.",
-      speed_m_s));
+  const tools::calibration::CollectedReadings collected = session.collect(speed_m_s);
   const std::vector<double> indicated_m_s =
       tools::calibration::indicated_speeds_m_s(collected[0], session.calibration());
   if (indicated_m_s.empty()) tools::calibration::refuse({"that part of the recording has no readings: check --part"});
@@ -46,22 +44,25 @@ wind::judging::CalibrationPoint measure_known_speed(tools::calibration::Session&
         {fmt::format("that wind is not steady: its standard deviation is {:.0f} %, allowed: up to {:.0f} %",
                      100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMaxUnsteadiness)});
   }
-  return {mean_m_s, speed_m_s};
+  const wind::judging::CalibrationPoint point{mean_m_s, speed_m_s};
+  session.report_point(point);
+  return point;
 }
 
 /// The pairs of indicated and true speed, from the options.
 std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::Session& session,
                                                          const SpanOptions& options) {
-  if (!options.points.empty())
-    return tools::calibration::value_or_refuse(wind::judging::parse_calibration_curve(options.points));
+  if (!options.points.empty()) {
+    auto points = tools::calibration::value_or_refuse(wind::judging::parse_calibration_curve(options.points));
+    for (const wind::judging::CalibrationPoint& point : points) session.report_point(point);
+    return points;
+  }
   std::vector<wind::judging::CalibrationPoint> pairs;
   if (session.reference() == nullptr) {
     for (const double speed_m_s : options.speeds_m_s) pairs.push_back(measure_known_speed(session, speed_m_s));
     return pairs;
   }
-  const tools::calibration::CollectedReadings collected = session.collect(
-      "Both sensors must be in the same wind, as close together as possible without sheltering each other; the more "
-      "the\nwind varies meanwhile, the better.");
+  const tools::calibration::CollectedReadings collected = session.collect();
   const tools::calibration::ReferencePairs beside =
       tools::calibration::pair_with_reference(session, collected, kSpanBlock_s);
   session.dialog().print(fmt::format("\nCompared with \"{}\": {} pairs of means over {:.0f} s.",
@@ -117,10 +118,10 @@ std::vector<double> shown_speeds(const std::vector<wind::judging::CalibrationPoi
 
 void calibrate_span(const SpanOptions& options) {
   check_options(options);
-  tools::calibration::Session session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
-  if (session.sensor().driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
-    throw ExitError(kExitUsage, "a microphone is calibrated with `yuragi calibrate microphone`");
-  }
+  tools::calibration::Session session(
+      options.request,
+      tools::calibration::way_of("span", options.request.reference.empty() ? tools::calibration::Given::kSpeed
+                                                                           : tools::calibration::Given::kReference));
   const std::vector<wind::judging::CalibrationPoint> pairs = known_pairs(session, options);
 
   std::vector<settings::ConfigChange> wanted;
@@ -171,6 +172,7 @@ void add_calibrate_span(CLI::App& calibrate) {
       "      --part 10,70 --part 90,150");
   auto options = std::make_shared<SpanOptions>();
   add_calibration_request(*command, options->request, "60; with --reference 900");
+  add_calibration_json(*command, options->request);
   command->add_option("--speed", options->speeds_m_s, "a known wind speed; can be repeated")
       ->type_name("M_S")
       ->check(CLI::Range(0.1, 100.0))

@@ -11,15 +11,9 @@ namespace yuragi::daemon::commands {
 namespace {
 
 void calibrate_zero(const tools::calibration::Request& request) {
-  tools::calibration::Session session(request, 30.0);
-  if (session.sensor().driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
-    throw ExitError(kExitUsage,
-                    "a microphone has no zero: its noise in a calm is found while it runs, or set as its noise_floor");
-  }
+  tools::calibration::Session session(request, tools::calibration::way_of("zero", tools::calibration::Given::kNothing));
   if (session.part_count() > 1) throw ExitError(kExitUsage, "--part: give only one");
-  const tools::calibration::CollectedReadings collected = session.collect(
-      "The air at the sensor must not move: put a box or a bag over it, close windows, switch off fans, and keep "
-      "your\nhands away. Cups must be free to turn.");
+  const tools::calibration::CollectedReadings collected = session.collect();
   const wind::judging::Calibration calibration = session.calibration();
   const wind::judging::StillAir air = tools::calibration::value_or_refuse(
       wind::judging::measure_still_air(tools::calibration::indicated_speeds_m_s(collected[0], calibration)));
@@ -48,6 +42,7 @@ void add_calibrate_zero(CLI::App& calibrate) {
       "  yuragi calibrate zero --config wall.toml --sensor roof --recording night.windlog --part 120,300 --dry-run");
   auto request = std::make_shared<tools::calibration::Request>();
   add_calibration_request(*command, *request, "30");
+  add_calibration_json(*command, *request);
   command->callback([request] { calibrate_zero(*request); });
 }
 

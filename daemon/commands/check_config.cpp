@@ -120,13 +120,21 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   return json;
 }
 
+std::string page_calibration_text(const settings::Config& config, const settings::SensorConfig& sensor) {
+  for (const settings::PageCalibration& calibration : config.page_calibrations) {
+    if (calibration.sensor == sensor.name && calibration.why_not.empty())
+      return ", calibrated on the page: " + calibration.values;
+  }
+  return "";
+}
+
 void print_summary(const settings::Config& config, const std::filesystem::path& file) {
   fmt::print("{}: no errors\n", file.string());
-  if (!config.page_file.empty()) fmt::print("{}: no errors, the last of the sensors\n", config.page_file);
+  if (!config.page_file.empty()) fmt::print("{}: no errors, the page's sensors and calibrations\n", config.page_file);
   for (const settings::SensorConfig& sensor : config.sensors) {
-    fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
+    fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}{}\n", sensor.name, sensor.driver->name,
                settings::place_text(sensor.blend), settings::gust_length_m(config.wind, sensor),
-               length_reason(config.wind, sensor));
+               length_reason(config.wind, sensor), page_calibration_text(config, sensor));
   }
   for (const settings::SceneConfig& scene : config.scenes)
     fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
@@ -185,6 +193,12 @@ void check_config(const CheckOptions& options) {
   if (!config.page_trouble.empty()) {
     fmt::print(stderr, "warning: what the page has set up is left out, and the configuration alone is read:\n{}\n",
                config.page_trouble);
+  }
+  for (const settings::PageCalibration& calibration : config.page_calibrations) {
+    if (!calibration.why_not.empty()) {
+      fmt::print(stderr, "warning: {}: the calibration of {} ({}) does not count: {}\n", config.page_file,
+                 calibration.sensor, calibration.values, calibration.why_not);
+    }
   }
   if (options.as_service) return rehearse(config, options);
   for (const std::string& warning : settings::exposed_secrets(config, options.file)) {

@@ -33,6 +33,11 @@ settings::Config config_with_warnings(const RunOptions& options) {
       spdlog::warn("{}", warning);
     }
   }
+  for (const settings::PageCalibration& calibration : config.page_calibrations) {
+    if (!calibration.why_not.empty())
+      spdlog::warn("the page's calibration of {} ({}) does not count: {}", calibration.sensor, calibration.values,
+                   calibration.why_not);
+  }
   if (!config.page_trouble.empty()) {
     spdlog::warn("what the page has set up is left out, and the configuration alone is read: {}", config.page_trouble);
   }

@@ -49,6 +49,13 @@ struct CameraConfig {
   look::Camera camera{};     ///< made of these
 };
 
+/// A calibration that the page has made of a sensor of the configuration.
+struct PageCalibration {
+  std::string sensor;
+  std::string values;   ///< for a person: "gain = 1.04, offset = -0.31"
+  std::string why_not;  ///< why it does not count; empty: it does
+};
+
 /// The configuration of an installation, parsed from TOML. Every value is within its range; what the file leaves out
 /// has its default. The keys are those of config_tables(), sensor_tables() and of the lists.
 struct Config {
@@ -72,6 +79,7 @@ struct Config {
 
   std::string page_file = {};     ///< whose sensors are the last ones (load_installation()); empty: none
   std::string page_trouble = {};  ///< why that file is left out, each line as in a ConfigError; empty: it is not
+  std::vector<PageCalibration> page_calibrations = {};  ///< those in that file
 
   /// The values of config_tables(), from which the members above were made. Only for writing, comparing and changing
   /// them.
@@ -106,9 +114,9 @@ Config listening_at(Config config, const std::string& address);
 /// ConfigError with every error found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
-/// The configuration with the sensors of the page's file (page_file.hpp), which has nothing but [[sensor]], with names
-/// of their own and keys that the page may set. The synthetic sensor of a file without any is replaced. Throws
-/// ConfigError with every error found in this text.
+/// The configuration with the page's file (page_file.hpp), which has nothing but [[sensor]], with names of their own
+/// and keys that the page may set, and [[calibration]] of sensors of the configuration. The synthetic sensor of a file
+/// without any is replaced. Throws ConfigError with every error found in this text.
 Config with_page(const Config& config, std::string_view toml_text, const std::string& source_name);
 
 /// The largest configuration that is read, in bytes: many times what any installation needs.

@@ -15,6 +15,7 @@
 
 #include "daemon/pictures/picture_file.hpp"
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/config_edit.hpp"
 #include "daemon/settings/page_file.hpp"
 #include "engine/output/output_tables.hpp"
 #include "engine/tables/parse_toml.hpp"
@@ -137,14 +138,18 @@ class ConfigReader {
     return config;
   }
 
-  /// The file of the page: adds its sensors.
+  /// The file of the page: adds its sensors, and sets its calibrations of others.
   void add_page(const toml::table& root, Config& config) {
     for (const auto& [key, node] : root) {
-      if (key.str() == "sensor" && !is_list(node))
-        mistake(key.source(), "sensor", "is no list; write its heading as [[sensor]]");
-      if (key.str() != "sensor")
-        mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]]");
+      const bool is_known = key.str() == "sensor" || key.str() == kCalibrationTable;
+      if (is_known && !is_list(node))
+        mistake(key.source(), std::string(key.str()),
+                fmt::format("is no list; write its heading as [[{}]]", key.str()));
+      if (!is_known)
+        mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]], [[calibration]]");
     }
+    for_each_table(root, kCalibrationTable, kMaxSensors,
+                   [&](const toml::table& entry) { read_page_calibration(entry, config); });
     if (std::ranges::all_of(config.sensors, [](const SensorConfig& sensor) { return sensor.origin.empty(); }) &&
         has_sensors(root))
       config.sensors.clear();  // the synthetic one, of a file without any
@@ -181,6 +186,49 @@ class ConfigReader {
                      check(sensor, entry);
                      config.sensors.push_back(std::move(sensor));
                    });
+  }
+
+  /// A calibration of a sensor of the configuration, which counts as long as that has the values that it replaces.
+  void read_page_calibration(const toml::table& entry, Config& config) {
+    const std::string prefix = std::string(kCalibrationTable) + ".";
+    const auto name = entry["sensor"].value<std::string>();
+    const toml::table* const replaced = entry["replaces"].as_table();
+    if (!name) mistake_in(entry, prefix, {"sensor", "is missing or not a text"});
+    if (replaced == nullptr) mistake_in(entry, prefix, {"replaces", "is missing or not a table"});
+    const ParameterValues given = read_values(entry, prefix, page_calibration_keys(), {"sensor", "replaces"});
+    if (!name || replaced == nullptr) return;
+    PageCalibration calibration{.sensor = *name, .values = {}, .why_not = {}};
+    std::vector<std::pair<std::string_view, ParameterValue>> values;
+    for (const Parameter& key : page_calibration_keys()) {
+      if (!entry.contains(key.name)) continue;
+      values.emplace_back(key.name, given.all().at(std::string(key.name)));
+      calibration.values +=
+          fmt::format("{}{} = {}", calibration.values.empty() ? "" : ", ", key.name, toml_value(values.back().second));
+    }
+    const auto sensor = std::ranges::find(config.sensors, *name, &SensorConfig::name);
+    if (sensor == config.sensors.end() || sensor->origin.empty()) {
+      calibration.why_not = "the configuration has no such sensor";
+    } else if (!is_replaced(*sensor, *replaced)) {
+      calibration.why_not = "the configuration of this sensor was changed since, and counts";
+    } else {
+      calibrate(*sensor, values, entry, prefix);
+    }
+    config.page_calibrations.push_back(std::move(calibration));
+  }
+
+  static bool is_replaced(const SensorConfig& sensor, const toml::table& replaced) {
+    return std::ranges::all_of(replaced_by_page(sensor), [&](const auto& one) {
+      const toml::node* const node = replaced.get(one.first);
+      return node != nullptr && tables::parameter_value_of(*node) == one.second;
+    });
+  }
+
+  void calibrate(SensorConfig& sensor, std::span<const std::pair<std::string_view, ParameterValue>> values,
+                 const toml::table& entry, const std::string& prefix) {
+    ParameterValues& all = sensor.by_name.at(kCalibrationTable);
+    for (const auto& [key, value] : values) all.set(key, value);
+    const auto table = std::ranges::find(sensor_tables(), kCalibrationTable, &SensorTable::name);
+    for (const ParameterError& error : table->fill(sensor, all)) mistake_in(entry, prefix, error);
   }
 
   void refuse_what_the_page_may_not(const SensorConfig& sensor, const toml::table& entry) {

@@ -127,9 +127,57 @@ std::string name_of(const toml::table& entry) {
   return entry["name"].value<std::string>().value_or(entry["driver"].value_or(std::string()));
 }
 
+constexpr const char* kCalibrations = "calibration";
+constexpr const char* kCalibrated = "sensor";
+constexpr const char* kReplaced = "replaces";
+
 /// The list of sensors; null: there is none.
 const toml::array* list_in(const toml::table& root) {
   return root["sensor"].as_array();
+}
+
+/// The first table of a list for which `is_it` holds; null: there is none.
+template <class IsIt>
+toml::table* table_in(toml::table& root, const char* list, const IsIt& is_it) {
+  toml::array* const tables = root[list].as_array();
+  for (std::size_t i = 0; tables != nullptr && i < tables->size(); ++i) {
+    toml::table* const table = tables->get(i)->as_table();
+    if (table != nullptr && is_it(*table)) return table;
+  }
+  return nullptr;
+}
+
+void put(toml::table& table, std::string_view key, const ParameterValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) table.insert_or_assign(key, *number);
+  if (const auto* text = std::get_if<std::string>(&value)) table.insert_or_assign(key, *text);
+}
+
+std::string text_with_head(const toml::table& root) {
+  std::ostringstream out;
+  out << kHead << '\n' << root << '\n';
+  return out.str();
+}
+
+/// The table for the calibration of a sensor of the configuration: the one that is there if it still counts, otherwise
+/// a new one.
+toml::table& calibration_of_configured(toml::table& root, const SensorConfig& sensor) {
+  toml::table replaced;
+  for (const auto& [key, value] : replaced_by_page(sensor)) put(replaced, key, value);
+  toml::table* table = table_in(root, kCalibrations,
+                                [&](const toml::table& one) { return one[kCalibrated].value_or("") == sensor.name; });
+  if (table != nullptr) {
+    const toml::table* const before = (*table)[kReplaced].as_table();
+    if (before != nullptr && *before == replaced) return *table;
+    table->clear();
+  } else {
+    root.insert(kCalibrations, toml::array());
+    toml::array& list = *root[kCalibrations].as_array();
+    list.push_back(toml::table());
+    table = list.get(list.size() - 1)->as_table();
+  }
+  table->insert(kCalibrated, sensor.name);
+  table->insert(kReplaced, std::move(replaced));
+  return *table;
 }
 
 bool can_be_used(const Config& config) {
@@ -181,7 +229,10 @@ Config with_page_checked(const Config& config, std::string_view page_text, const
 }
 
 Config load_installation(const std::filesystem::path& file) {
-  Config config = load_config(file);
+  return with_page_file(load_config(file), file);
+}
+
+Config with_page_file(Config config, const std::filesystem::path& file) {
   const std::filesystem::path page = page_file(file);
   std::error_code error;
   if (page.empty() || (!std::filesystem::exists(page, error) && !error)) return config;
@@ -227,14 +278,87 @@ Result<std::string, Failure> without_sensor(std::string_view page_text, std::str
       if (entry == nullptr || name_of(*entry) != name) continue;
       list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
       if (list->empty()) root.erase("sensor");
-      std::ostringstream out;
-      out << kHead << '\n' << root << '\n';
-      return {boost::system::in_place_value, out.str()};
+      return {boost::system::in_place_value, text_with_head(root)};
     }
   } catch (const toml::parse_error&) {
     return not_toml();
   }
   return Failure{fmt::format("the page has set up no sensor \"{}\"", name), FailureKind::kNoInput};
+}
+
+std::span<const Parameter> page_calibration_keys() {
+  static const std::vector<Parameter> kKeys = [] {
+    std::vector<Parameter> keys;
+    for (const Parameter& key : std::ranges::find(sensor_tables(), kCalibrationTable, &SensorTable::name)->parameters) {
+      if (key.name == "gain" || key.name == "offset" || key.name == "curve" || key.name == "north_offset")
+        keys.push_back(key);
+    }
+    return keys;
+  }();
+  return kKeys;
+}
+
+std::vector<std::pair<std::string_view, ParameterValue>> replaced_by_page(const SensorConfig& sensor) {
+  const ParameterValues& values = sensor.by_name.at(kCalibrationTable);
+  std::vector<std::pair<std::string_view, ParameterValue>> replaced = {
+      {"driver", std::string(sensor.driver->name)},  // another device may have its name now
+      {"unit", values.text("unit")}};
+  for (const Parameter& key : page_calibration_keys())
+    replaced.emplace_back(key.name, values.all().at(std::string(key.name)));
+  return replaced;
+}
+
+Result<std::string, Failure> with_calibration(std::string_view page_text, const Config& config, std::string_view sensor,
+                                              std::span<const ConfigChange> changes) {
+  try {
+    toml::table root = tables::parse_toml(page_text);
+    toml::table* table = table_in(root, "sensor", [&](const toml::table& one) { return name_of(one) == sensor; });
+    if (table != nullptr) {
+      table->insert(kCalibrationTable, toml::table());
+      table = (*table)[kCalibrationTable].as_table();
+    } else {
+      const auto known = std::ranges::find(config.sensors, sensor, &SensorConfig::name);
+      if (known == config.sensors.end() || known->origin.empty())
+        return Failure{fmt::format("there is no sensor \"{}\" to calibrate", sensor), FailureKind::kNoInput};
+      table = &calibration_of_configured(root, *known);
+    }
+    if (table == nullptr) return Failure{"the page's file has a calibration that is no table", FailureKind::kBadData};
+    for (const ConfigChange& change : changes) put(*table, change.key, change.value);
+    return {boost::system::in_place_value, text_with_head(root)};
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+}
+
+Result<std::string, Failure> without_calibration(std::string_view page_text, std::string_view sensor) {
+  try {
+    toml::table root = tables::parse_toml(page_text);
+    toml::array* const list = root[kCalibrations].as_array();
+    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+      const toml::table* const entry = list->get(i)->as_table();
+      if (entry == nullptr || (*entry)[kCalibrated].value_or("") != sensor) continue;
+      list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
+      if (list->empty()) root.erase(kCalibrations);
+      return {boost::system::in_place_value, text_with_head(root)};
+    }
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+  return Failure{fmt::format("the page has no calibration of \"{}\"", sensor), FailureKind::kNoInput};
+}
+
+Result<std::vector<std::string>, Failure> calibrations_in(std::string_view page_text) {
+  try {
+    std::vector<std::string> names;
+    toml::table root = tables::parse_toml(page_text);
+    table_in(root, kCalibrations, [&names](const toml::table& one) {
+      names.push_back(one[kCalibrated].value_or(std::string()));
+      return false;
+    });
+    return names;
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
 }
 
 Result<std::vector<std::string>, Failure> sensors_in(std::string_view page_text) {

@@ -3,19 +3,22 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/config_edit.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::settings {
 
-// page.toml: the sensors that were set up on the page. It is read after the configuration, and is hostile until here:
-// whoever may change something on the page must not gain the rights of the daemon's user by it.
+// page.toml: the sensors that were set up on the page, and calibrations of others. It is read after the configuration,
+// and is hostile until here: whoever may change something on the page must not gain the rights of the daemon's user by
+// it.
 
 /// The largest file that is read.
 inline constexpr std::size_t kMaxPage_bytes = std::size_t{64} << 10;
@@ -38,6 +41,9 @@ std::optional<std::string> page_refusal(const drivers::sensor::DriverDescription
 /// Throws ConfigError for the configuration alone.
 Config load_installation(const std::filesystem::path& file);
 
+/// The same for a configuration that was read from `file` already.
+Config with_page_file(Config config, const std::filesystem::path& file);
+
 /// The same with another text in place of the page's file, called `source_name` in messages. Throws ConfigError for
 /// either.
 Config with_page_checked(const Config& config, std::string_view page_text, const std::string& source_name);
@@ -55,6 +61,25 @@ std::string with_sensor(std::string_view page_text, const PageSensor& sensor);
 
 /// The page's file without a sensor; fails if there is none of this name, or the text is not TOML. Pure.
 Result<std::string, Failure> without_sensor(std::string_view page_text, std::string_view name);
+
+/// The keys of [sensor.calibration] that the page may set: what a calibration finds.
+std::span<const Parameter> page_calibration_keys();
+
+/// The page's file with values of page_calibration_keys() for a sensor: in the sensor's own entry if the page has set
+/// it up, otherwise as a [[calibration]] of the sensor of `config`, which is the configuration without the page. There
+/// they stand with what they replace, and count only until the configuration has other values: a later calibration of
+/// it is never overridden. Fails if there is no such sensor, or the text is not TOML. Pure.
+Result<std::string, Failure> with_calibration(std::string_view page_text, const Config& config, std::string_view sensor,
+                                              std::span<const ConfigChange> changes);
+
+/// The page's file without its [[calibration]] of a sensor; fails if there is none, or the text is not TOML. Pure.
+Result<std::string, Failure> without_calibration(std::string_view page_text, std::string_view sensor);
+
+/// The sensors that have a [[calibration]], in order; fails if the text is not TOML. Pure.
+Result<std::vector<std::string>, Failure> calibrations_in(std::string_view page_text);
+
+/// What a [[calibration]] replaces, as it is written in it: those values of a sensor on which it depends. Pure.
+std::vector<std::pair<std::string_view, ParameterValue>> replaced_by_page(const SensorConfig& sensor);
 
 /// The names of its sensors, in order; fails if the text is not TOML. Pure.
 Result<std::vector<std::string>, Failure> sensors_in(std::string_view page_text);

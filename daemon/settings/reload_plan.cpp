@@ -211,6 +211,7 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
                     wanted.page_trouble.empty() ? "the page's file is read" : "the page's file is left out");
   next.page_trouble = wanted.page_trouble;
   next.page_file = wanted.page_file;
+  next.page_calibrations = wanted.page_calibrations;
   for (SensorConfig& sensor : next.sensors) {
     const auto found = std::ranges::find(wanted.sensors, sensor.name, &SensorConfig::name);
     if (found != wanted.sensors.end()) compare_sensor(comparison, sensor, *found);

@@ -36,6 +36,8 @@ using What = ArchiveRequest::What;
 constexpr auto kMaxCheck = std::chrono::seconds(60);
 constexpr auto kMaxSearch = std::chrono::seconds(60);
 constexpr auto kMaxTrial = std::chrono::seconds(90);
+/// Beside the time that it listens: until the first readings, and for the rest.
+constexpr auto kMaxCalibrationExtra = std::chrono::seconds(180);
 constexpr auto kForgetEvery = std::chrono::minutes(1);
 constexpr const char* kRecordingType = "application/vnd.sqlite3";
 /// Of a copy beside its recording: what the recorder writes meanwhile, with room to spare.
@@ -164,6 +166,8 @@ struct Archive::Shared {
         return job(request.name);
       case What::kJobFile:
         return job_file(request.name);
+      case What::kCancelJob:
+        return jobs.cancel(request.name) ? job(request.name) : no_job();
       case What::kConfiguration:
         return configuration();
       case What::kDrivers:
@@ -181,6 +185,14 @@ struct Archive::Shared {
         return setup().remove(request.name);
       case What::kUndoSensors:
         return setup().undo();
+      case What::kCalibrations:
+        return calibrations();
+      case What::kCalibrate:
+        return calibrate(request.name, request.calibration);
+      case What::kKeepCalibration:
+        return setup().calibrate(request.name, request.found);
+      case What::kForgetCalibration:
+        return setup().forget_calibration(request.name);
     }
     return problem(500, "Not done", "this request is not known");
   }
@@ -321,6 +333,27 @@ struct Archive::Shared {
                     .input = std::move(*text),
                     .shows_progress = true,
                     .time = kMaxTrial});
+  }
+
+  http::Response calibrations() const {
+    if (settings.configuration.empty())
+      return problem(404, "No file", "the daemon runs without a configuration file: nothing can be calibrated");
+    const ChildOutput output =
+        run_niced(command({"calibrate", "list", "--config", settings.configuration.string(), "--json"}), kMaxCheck,
+                  stop.get_token());
+    if (std::string failure = failure_of(output); !failure.empty()) return busy(failure);
+    auto sensors = ordered_json::parse(output.printed, nullptr, false);
+    return json_response({{"sensors", sensors.is_discarded() ? ordered_json::array() : std::move(sensors)}});
+  }
+
+  http::Response calibrate(const std::string& sensor, const CalibrationOrder& wanted) {
+    if (auto refusal = setup().calibration_refusal(sensor, wanted.reference)) return std::move(*refusal);
+    JobOrder order{.kind = "calibrate", .command = command({"calibrate"}), .shows_progress = true};
+    for (std::string& word : words_of(wanted, sensor)) order.command.push_back(std::move(word));
+    order.command.push_back("--config=" + settings.configuration.string());
+    if (!settings.stream.empty()) order.command.push_back("--connect=" + settings.stream);
+    order.time = from_seconds(wanted.duration_s.value_or(CalibrationOrder::kMaxDuration_s)) + kMaxCalibrationExtra;
+    return started(std::move(order));
   }
 
   /// As the next start would read it.

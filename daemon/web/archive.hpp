@@ -11,6 +11,7 @@
 
 #include "daemon/http/server.hpp"
 #include "daemon/settings/page_file.hpp"
+#include "daemon/web/calibration_order.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -34,8 +35,9 @@ struct ArchiveRequest {
     kReport,
     kCopy,
     kSupportBundle,
-    kJob,      ///< how a job is
-    kJobFile,  ///< what a job has made
+    kJob,        ///< how a job is
+    kJobFile,    ///< what a job has made
+    kCancelJob,  ///< and how it is then
     kConfiguration,
     kDrivers,      ///< and those of their keys that the page may set
     kSensors,      ///< that the page has set up
@@ -44,11 +46,17 @@ struct ArchiveRequest {
     kAddSensor,
     kRemoveSensor,
     kUndoSensors,
+    kCalibrations,       ///< how each sensor can be calibrated
+    kCalibrate,          ///< a job
+    kKeepCalibration,    ///< of values that a job has found
+    kForgetCalibration,  ///< that the page has made of a sensor of the configuration
   };
 
   What what = What::kList;
   std::string name = {};             ///< of the recording or the sensor, or the id of the job; hostile
   settings::PageSensor sensor = {};  ///< to try or to add; hostile
+  CalibrationOrder calibration = {};
+  FoundCalibration found = {};  ///< to keep; hostile
 };
 
 /// The daemon's files for those who may change something: its recordings, its configuration, and jobs about them

@@ -97,7 +97,8 @@ struct Jobs::Work {
     steady_clock::time_point begun, ended;
   };
 
-  std::stop_source stop{};
+  std::stop_source stop{};  ///< of the job that runs, or ran last
+  bool has_ended = false;
   mutable std::mutex mutex{};
   std::condition_variable is_done{};
   bool is_running = false;
@@ -129,13 +130,15 @@ Jobs::~Jobs() {
 }
 
 void Jobs::end() {
-  work_->stop.request_stop();
   std::unique_lock lock(work_->mutex);
+  work_->has_ended = true;
+  work_->stop.request_stop();
   work_->is_done.wait_for(lock, kMaxAtEnd, [this] { return !work_->is_running; });
 }
 
 Result<std::string, Failure> Jobs::start(JobOrder order) {
   std::string id;
+  std::stop_token stop;
   {
     const std::lock_guard lock(work_->mutex);
     if (work_->is_running) {
@@ -150,15 +153,17 @@ Result<std::string, Failure> Jobs::start(JobOrder order) {
                            .ended = {}});
     if (work_->kept.size() > kMaxKept) work_->kept.pop_front();
     work_->is_running = true;
+    if (!work_->has_ended) work_->stop = std::stop_source();
+    stop = work_->stop.get_token();
   }
   try {
-    std::thread([work = work_, order = std::move(order)] {
+    std::thread([work = work_, stop, order = std::move(order)] {
       contain(
           "a job of the page",
           [&] {
             std::function<void(const std::string&)> look;
             if (order.shows_progress) look = [&work](const std::string& printed) { work->show(printed); };
-            work->finish(carry_out(order, work->stop.get_token(), look));
+            work->finish(carry_out(order, stop, look));
           },
           [&](const char* what) { work->finish({.failure = what, .printed = {}, .file = {}}); });
     }).detach();
@@ -166,6 +171,14 @@ Result<std::string, Failure> Jobs::start(JobOrder order) {
     work_->finish({.failure = error.what(), .printed = {}, .file = {}});
   }
   return {boost::system::in_place_value, id};
+}
+
+bool Jobs::cancel(const std::string& id) {
+  const std::lock_guard lock(work_->mutex);
+  const auto found = std::ranges::find(work_->kept, id, [](const Work::Kept& one) { return one.job.id; });
+  if (found == work_->kept.end()) return false;
+  if (found->job.state == Job::State::kRunning) work_->stop.request_stop();
+  return true;
 }
 
 std::optional<Job> Jobs::find(const std::string& id) const {

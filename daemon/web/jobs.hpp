@@ -63,6 +63,9 @@ class Jobs {
   /// Begins it, and returns its id. Fails with kUnavailable while another one runs.
   Result<std::string, Failure> start(JobOrder order);
 
+  /// Ends it if it runs: it then fails, soon. Returns false if it is not known.
+  bool cancel(const std::string& id);
+
   /// Returns nullopt if it is not known, or not any more.
   std::optional<Job> find(const std::string& id) const;
 

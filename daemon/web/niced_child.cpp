@@ -87,7 +87,7 @@ ChildOutput run_niced(std::vector<std::string> command, Nanoseconds time, const 
         look(printed.tail(kMaxPrinted_bytes));
       }
       if (stop.stop_requested()) {
-        output.why = "the daemon ends";
+        output.why = "it was cancelled";
       } else if (steady_clock::now() >= deadline) {
         output.why = "it has taken too long";
       } else if (std::max(printed.size(), complaints.size()) > kMaxPrinted_bytes) {

@@ -49,6 +49,11 @@ class Body {
     refuse(key, fmt::format("a number from {} to {}", least, most));
     return otherwise;
   }
+  /// Without the key: nullopt.
+  std::optional<double> optional_number(const char* key, double least, double most) {
+    if (!object_.is_object() || !object_.contains(key)) return std::nullopt;
+    return number(key, least, least, most);
+  }
   /// Null: nullopt.
   std::optional<double> number_or_null(const char* key, double otherwise, double least, double most) {
     if (object_.is_object() && object_.contains(key) && object_[key].is_null()) {
@@ -251,6 +256,44 @@ Result<settings::PageSensor, Failure> sensor_of(std::string_view json, bool has_
   sensor.values = body.values("parameters", kMostKeys);
   if (auto mistake = body.mistake()) return std::move(*mistake);
   return sensor;
+}
+
+Result<CalibrationOrder, Failure> calibration_order_of(std::string_view json) {
+  Body body(json);
+  CalibrationOrder order;
+  order.calibration = body.text("calibration", "");
+  order.duration_s = body.optional_number("for_s", 1.0, CalibrationOrder::kMaxDuration_s);
+  order.bearing_deg = body.optional_number("bearing_deg", 0.0, 360.0);
+  order.speed_m_s = body.optional_number("speed_m_s", 0.1, 100.0);
+  order.reference = body.text("reference", "");
+  const auto points = wind::judging::parse_calibration_curve(body.text("points", ""));
+  body.require(points.has_value(), "points: must be MEASURED:TRUE in m/s, two or more with blanks between, rising");
+  if (points) order.points = *points;
+  const bool has_bearing = order.bearing_deg.has_value();
+  const bool has_speed = order.speed_m_s.has_value();
+  const bool has_points = !order.points.empty();
+  const int known = int{has_bearing} + int{has_speed} + int{has_points} + int{!order.reference.empty()};
+  const bool is_zero = order.calibration == "zero" && known == 0;
+  const bool is_north = order.calibration == "north" && known == 1 && !has_speed && !has_points;
+  const bool is_span = order.calibration == "span" && known == 1 && !has_bearing;
+  body.require(is_zero || is_north || is_span,
+               "calibration: must be zero, north with bearing_deg or reference, or span with speed_m_s, points or "
+               "reference");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return order;
+}
+
+Result<FoundCalibration, Failure> found_calibration_of(std::string_view json) {
+  constexpr std::size_t kMaxKeys = 8;
+  Body body(json);
+  FoundCalibration found;
+  found.before = body.values("before", kMaxKeys);
+  found.after = body.values("after", kMaxKeys);
+  const auto name = [](const auto& one) -> const std::string& { return one.first; };
+  body.require(!found.after.empty() && std::ranges::equal(found.before, found.after, {}, name, name),
+               "after: must have keys, and before the same ones");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return found;
 }
 
 Result<void, Failure> empty_body(std::string_view json) {

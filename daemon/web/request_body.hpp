@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/settings/page_file.hpp"
+#include "daemon/web/calibration_order.hpp"
 #include "engine/base/result.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -67,6 +68,13 @@ Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
 
 /// {"driver": name, "parameters": {key: value}}, and if it is to be added "name"
 Result<settings::PageSensor, Failure> sensor_of(std::string_view json, bool has_name);
+
+/// {"calibration": "zero", "for_s": 30}; "north" with "bearing_deg" or "reference"; "span" with "speed_m_s",
+/// "reference", or "points", which are "MEASURED:TRUE MEASURED:TRUE" in m/s, rising
+Result<CalibrationOrder, Failure> calibration_order_of(std::string_view json);
+
+/// {"before": {key: value}, "after": {key: value}} with the same keys in both
+Result<FoundCalibration, Failure> found_calibration_of(std::string_view json);
 
 /// {}, of a request whose path has all
 Result<void, Failure> empty_body(std::string_view json);

@@ -258,6 +258,17 @@ Answer job(const http::Request& request, const Facts& facts) {
   return archived<kWhat>(request, facts);
 }
 
+Answer calibrate(const http::Request& request, const Facts& /*facts*/) {
+  auto order = calibration_order_of(request.body);
+  if (!order) return problem(400, "Not understood", order.error().message);
+  return ArchiveRequest{.what = What::kCalibrate, .name = name_in(request.path), .calibration = std::move(*order)};
+}
+Answer keep_calibration(const http::Request& request, const Facts& /*facts*/) {
+  auto found = found_calibration_of(request.body);
+  if (!found) return problem(400, "Not understood", found.error().message);
+  return ArchiveRequest{.what = What::kKeepCalibration, .name = name_in(request.path), .found = std::move(*found)};
+}
+
 Answer sensor_request(const http::Request& request, What what) {
   auto sensor = sensor_of(request.body, what == What::kAddSensor);
   if (!sensor) return problem(400, "Not understood", sensor.error().message);
@@ -300,6 +311,7 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/recordings/{name}/copy", job<What::kCopy>, true},
     Route{"POST", "/api/v1/support-bundle", job<What::kSupportBundle>, true},
     Route{"GET", "/api/v1/jobs/{id}", archived<What::kJob>, true},
+    Route{"DELETE", "/api/v1/jobs/{id}", archived<What::kCancelJob>, true},
     Route{"GET", "/api/v1/jobs/{id}/file", archived<What::kJobFile>, true},
     Route{"GET", "/api/v1/configuration", archived<What::kConfiguration>, true},
 
@@ -310,6 +322,11 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/sensors/try", try_sensor, true},
     Route{"POST", "/api/v1/sensors/undo", job<What::kUndoSensors>, true},
     Route{"DELETE", "/api/v1/sensors/{name}", archived<What::kRemoveSensor>, true},
+
+    Route{"GET", "/api/v1/calibrations", archived<What::kCalibrations>, true},
+    Route{"POST", "/api/v1/sensors/{name}/calibrate", calibrate, true},
+    Route{"POST", "/api/v1/sensors/{name}/calibration", keep_calibration, true},
+    Route{"DELETE", "/api/v1/sensors/{name}/calibration", archived<What::kForgetCalibration>, true},
 };
 
 /// Takes the first part of a path, up to the next slash, which goes, too.

@@ -30,6 +30,16 @@ http::Response not_done(const std::string& why) {
   return problem(409, "Not done", why);
 }
 
+http::Response no_sensor(const std::string& name) {
+  return problem(404, "Not found", fmt::format("the configuration has no sensor \"{}\"", name));
+}
+
+/// A sensor that is in a file; nullptr: there is none of this name.
+const settings::SensorConfig* configured(const settings::Config& config, const std::string& name) {
+  const auto found = std::ranges::find(config.sensors, name, &settings::SensorConfig::name);
+  return found == config.sensors.end() || found->origin.empty() ? nullptr : &*found;
+}
+
 Result<void, Failure> write(const fs::path& file, const std::string& text) {
   try {
     return platform::write_whole(file, text, kOwnersAlone);
@@ -92,6 +102,20 @@ Result<std::string, Failure> SensorSetup::text_of(const fs::path& file) const {
   return {boost::system::in_place_value, std::move(*text)};
 }
 
+/// Without and with the page's part. Fails if the page may set up nothing, or its part has a mistake.
+Result<SensorSetup::Installation, Failure> SensorSetup::installation() const {
+  auto config = configuration();
+  if (!config) return config.error();
+  auto text = text_of(page_);
+  if (!text) return text.error();
+  try {
+    settings::Config both = settings::with_page(*config, *text, kPage);
+    return Installation{.configuration = std::move(*config), .with_page = std::move(both), .page_text = *text};
+  } catch (const settings::ConfigError& error) {
+    return Failure{std::string("what the page has set up is left out: ") + error.what()};
+  }
+}
+
 Result<void, Failure> SensorSetup::check(const std::string& text) const {
   const auto config = configuration();
   if (!config) return config.error();
@@ -108,7 +132,9 @@ http::Response SensorSetup::list() const {
   const auto text = text_of(page_);
   const auto names = text ? settings::sensors_in(*text) : Result<std::vector<std::string>, Failure>(text.error());
   std::error_code error;
+  const auto calibrated = text ? settings::calibrations_in(*text) : names;
   return {.body = json_text(ordered_json{{"sensors", names ? ordered_json(*names) : ordered_json::array()},
+                                         {"calibrated", calibrated ? ordered_json(*calibrated) : ordered_json::array()},
                                          {"can_undo", !page_.empty() && fs::exists(before(), error)},
                                          {"trouble", names ? ordered_json() : ordered_json(names.error().message)}},
                             2) +
@@ -129,6 +155,48 @@ http::Response SensorSetup::remove(const std::string& name) const {
   if (!without && without.error().kind == FailureKind::kNoInput)
     return problem(404, "Not found", without.error().message + "; others are in the configuration");
   return replace(without, fmt::format("sensor {} was removed", name));
+}
+
+std::optional<http::Response> SensorSetup::calibration_refusal(const std::string& sensor,
+                                                               const std::string& reference) const {
+  const auto installed = installation();
+  if (!installed) return not_done(installed.error().message);
+  for (const std::string* const name : {&sensor, &reference}) {
+    if (name == &reference && name->empty()) continue;
+    if (configured(installed->with_page, *name) == nullptr) return no_sensor(*name);
+  }
+  return std::nullopt;
+}
+
+http::Response SensorSetup::calibrate(const std::string& sensor, const FoundCalibration& found) const {
+  const auto installed = installation();
+  if (!installed) return not_done(installed.error().message);
+  const settings::SensorConfig* const known = configured(installed->with_page, sensor);
+  if (known == nullptr) return no_sensor(sensor);
+  const auto& now = known->by_name.at(settings::kCalibrationTable).all();
+  std::vector<settings::ConfigChange> changes;
+  for (std::size_t i = 0; i < found.after.size(); ++i) {
+    const auto& [name, typed] = found.after[i];
+    const auto keys = settings::page_calibration_keys();
+    const auto key = std::ranges::find(keys, name, &Parameter::name);
+    if (key == keys.end()) return not_done(name + ": is not found by a calibration");
+    if (typed_value(*key, found.before[i].second) != now.at(name))
+      return not_done(fmt::format("{} was changed while {} was calibrated: calibrate it again", name, sensor));
+    changes.push_back({std::string(settings::kCalibrationTable), name, typed_value(*key, typed)});
+    if (changes.back().value.index() != key->default_value.index())
+      return not_done(fmt::format("{}: is \"{}\", which is no number", name, typed));
+  }
+  return replace(settings::with_calibration(installed->page_text, installed->configuration, sensor, changes),
+                 fmt::format("sensor {} was calibrated", sensor));
+}
+
+http::Response SensorSetup::forget_calibration(const std::string& sensor) const {
+  const auto text = text_of(page_);
+  if (!text) return not_done(text.error().message);
+  auto without = settings::without_calibration(*text, sensor);
+  if (!without && without.error().kind == FailureKind::kNoInput)
+    return problem(404, "Not found", without.error().message);
+  return replace(without, fmt::format("the calibration of {} was removed", sensor));
 }
 
 http::Response SensorSetup::replace(const Result<std::string, Failure>& text, std::string_view done_what) const {

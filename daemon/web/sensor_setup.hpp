@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "daemon/http/server.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/page_file.hpp"
+#include "daemon/web/calibration_order.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::web {
@@ -15,17 +17,26 @@ namespace yuragi::daemon::web {
 /// What `yuragi sensors describe --json` prints, without the drivers and keys that the page may not set. Pure.
 std::string for_the_page(const std::string& described);
 
-/// Sets sensors up on the page: changes the file of the page (settings/page_file.hpp), which is whole at any moment,
-/// and has the daemon started again. The state before stays beside it as FILE.before. Waits for the disk.
+/// Sets sensors up and calibrates them on the page: changes the file of the page (settings/page_file.hpp), which is
+/// whole at any moment, and has the daemon started again. The state before stays beside it as FILE.before. Waits for
+/// the disk.
 class SensorSetup {
  public:
   /// `restart`: empty: the daemon cannot be started again, and nothing is set up.
   SensorSetup(std::filesystem::path configuration, std::filesystem::path page, std::function<void()> restart);
 
-  /// The names of the sensors that the page has set up, and whether there is something to undo.
+  /// The names of the sensors that the page has set up, and of those of the configuration that it has calibrated, and
+  /// whether there is something to undo.
   http::Response list() const;
   http::Response add(const settings::PageSensor& sensor) const;
   http::Response remove(const std::string& name) const;
+  /// Keeps the values that a calibration of a sensor has found, unless the sensor has others now than it began from.
+  http::Response calibrate(const std::string& sensor, const FoundCalibration& found) const;
+  /// Removes the page's calibration of a sensor of the configuration.
+  http::Response forget_calibration(const std::string& sensor) const;
+  /// Why a sensor cannot be calibrated beside `reference` (empty: none); nullopt if both exist and a result may be
+  /// kept.
+  std::optional<http::Response> calibration_refusal(const std::string& sensor, const std::string& reference) const;
   /// Exchanges the file and the state before it: a second time undoes this.
   http::Response undo() const;
 
@@ -35,6 +46,11 @@ class SensorSetup {
  private:
   std::filesystem::path before() const;
   Result<settings::Config, Failure> configuration() const;
+  struct Installation {
+    settings::Config configuration, with_page;
+    std::string page_text;
+  };
+  Result<Installation, Failure> installation() const;
   Result<std::string, Failure> text_of(const std::filesystem::path& file) const;
   Result<void, Failure> check(const std::string& text) const;
   http::Response replace(const Result<std::string, Failure>& text, std::string_view done) const;

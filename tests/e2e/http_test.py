@@ -509,7 +509,7 @@ class Http(unittest.TestCase):
         parameters = {"transport": "tcp", "host": "127.0.0.1", "port": port}
         daemon = self.start_daemon_for_setup()
         self.assertEqual(self.sensors(), ["synthetic"])
-        self.assertEqual(self.set_up(), (200, {"sensors": [], "can_undo": False, "trouble": None}))
+        self.assertEqual(self.set_up(), (200, {"sensors": [], "calibrated": [], "can_undo": False, "trouble": None}))
         drivers = json.loads(self.ask("/api/v1/drivers", **self.rights)[1])["drivers"]
         keys = {driver["name"]: [key["name"] for key in driver["parameters"]] for driver in drivers}
         self.assertIn("port", keys["nmea"])
@@ -530,7 +530,7 @@ class Http(unittest.TestCase):
         self.assertEqual(self.sensors(), ["roof"])
         self.wait_for("/api/v1/status", 200, '"state": "live"')
         self.assertEqual(os.stat(self.page).st_mode & 0o077, 0)
-        self.assertEqual(self.set_up(), (200, {"sensors": ["roof"], "can_undo": True, "trouble": None}))
+        self.assertEqual(self.set_up(), (200, {"sensors": ["roof"], "calibrated": [], "can_undo": True, "trouble": None}))
         self.assertIn(self.page, subprocess.run([YURAGI, "check-config", self.file], capture_output=True, text=True, check=True).stdout)
         code, refusal = self.set_up("/try", {"driver": "nmea", "parameters": parameters})
         self.assertEqual(code, 409)
@@ -576,6 +576,114 @@ class Http(unittest.TestCase):
         code, text = self.ask("/api/v1/sensors", {"name": "roof", "driver": "synthetic"})
         self.assertEqual(code, 409)
         self.assertIn("token_file", json.loads(text)["detail"])
+
+    def start_station(self):
+        station = self.enterContext(Program(os.path.join(os.path.dirname(YURAGI), "yuragi-sim"), "nmea", "--tcp", "127.0.0.1:0", "--rate", "5",
+                                            "--speed", "8", "--direction", "350", "--turbulence", "0"))
+        port = int(station.wait_for(r"127\.0\.0\.1:(\d+)").group(1))
+        roof = f'[[sensor]]\nname = "roof"\ndriver = "nmea"\ntransport = "tcp"\nhost = "127.0.0.1"\nport = {port}\n'
+        return station, self.start_daemon_for_setup(roof)
+
+    def job_when(self, job, holds):
+        hangs = time.monotonic() + HANG_S
+        while not holds(job):
+            self.assertLess(time.monotonic(), hangs, job)
+            time.sleep(0.1)
+            job = json.loads(self.ask("/api/v1/jobs/" + job["id"], **self.rights)[1])
+        return job
+
+    def calibrated(self, **order):
+        code, job = self.set_up("/roof/calibrate", order)
+        self.assertEqual(code, 202, job)
+        job = self.job_when(job, lambda job: job["state"] != "running")
+        self.assertEqual(job["state"], "done", job)
+        return job["result"]
+
+    def check_config(self, *options):
+        return subprocess.run([YURAGI, "check-config", self.file, *options], capture_output=True, text=True, check=True)
+
+    def direction(self):
+        return json.loads(self.ask("/api/v1/status")[1])["sensors"][0]["direction_deg"]
+
+    def test_a_sensor_is_calibrated_and_a_later_calibration_of_the_terminal_counts(self):
+        _, daemon = self.start_station()
+        listed = json.loads(self.ask("/api/v1/calibrations", **self.rights)[1])["sensors"]
+        self.assertEqual([sensor["sensor"] for sensor in listed], ["roof"])
+        self.assertIn("must not move", listed[0]["ways"][0]["preparation"])
+        self.wait_for("/api/v1/status", 200, '"state": "live"')
+
+        found = self.calibrated(calibration="north", bearing_deg=90, for_s=5)
+        self.assertEqual(found["before"], {"north_offset": 0.0})
+        self.assertAlmostEqual(found["after"]["north_offset"], 100.0, delta=2.0)
+        self.assertGreater(found["readings"][0]["count"], 4)
+        self.assertIn("The vane reads", found["notes"][-1])
+        self.assertEqual(found["effect"]["rows"][0]["indicated"], 0.0)
+        self.assertFalse(os.path.exists(self.page), "a calibration writes nothing before it is kept")
+        kept = {key: found[key] for key in ("before", "after")}
+        self.change_and_wait(daemon, "/roof/calibration", kept)
+        self.wait_for("/api/v1/status", 200, '"state": "live"')
+        self.assertAlmostEqual(self.direction(), 90.0, delta=3.0)
+        self.assertEqual(self.set_up()[1]["calibrated"], ["roof"])
+        self.assertIn("calibrated on the page: north_offset = ", self.check_config().stdout)
+        self.assertIn(f"north_offset = {found['after']['north_offset']}", self.check_config("--full").stdout)
+        self.assertEqual(self.set_up("/roof/calibration", kept)[0], 409, "it has other values now")
+
+        # Known winds: each is a job, and the page keeps what was measured.
+        point = self.calibrated(calibration="span", speed_m_s=8.8, for_s=2)["points"][0]
+        self.assertAlmostEqual(point["measured_m_s"], 8.0, delta=0.3)
+        line = self.calibrated(calibration="span", points=f"2:2.2 {point['measured_m_s']}:{point['true_m_s']}")
+        self.assertAlmostEqual(line["after"]["gain"], 1.1, delta=0.05)
+
+        stream = re.findall(r"listening on (\S+)", daemon.text())[-1]  # it was started again
+        done = subprocess.run([YURAGI, "calibrate", "span", "--config", self.file, "--connect", stream, "--speed", "8.8", "--for", "2", "--yes"],
+                              capture_output=True, text=True, check=True)
+        self.assertIn("calibration.north_offset", done.stdout, "what the page has calibrated is taken over")
+        checked = self.check_config("--full")
+        self.assertRegex(checked.stderr, r"calibration of roof \(north_offset = .*\) does not count: .* was changed since")
+        self.assertRegex(checked.stdout, r"gain = 1\.(0[5-9]|1)")
+        self.assertIn(f"north_offset = {found['after']['north_offset']}", checked.stdout)
+        self.assertAlmostEqual(self.direction(), 90.0, delta=3.0)
+        self.change_and_wait(daemon, "/roof/calibration", None, "DELETE")
+        self.assertEqual(self.set_up()[1]["calibrated"], [])
+
+    def test_a_calibration_is_cancelled_and_ends_when_its_sensor_is_lost(self):
+        station, _ = self.start_station()
+        self.wait_for("/api/v1/status", 200, '"state": "live"')
+
+        def begun():
+            code, job = self.set_up("/roof/calibrate", {"calibration": "zero", "for_s": 1800})
+            self.assertEqual(code, 202, job)
+            return self.job_when(job, lambda job: job["result"] and job["result"]["readings"][0]["count"] > 0)
+
+        job = begun()
+        self.assertEqual((job["state"], job["result"]["duration_s"]), ("running", 1800))
+        self.assertEqual(self.ask("/api/v1/jobs/" + job["id"], None, "DELETE")[0], 401)
+        self.assertEqual(self.ask("/api/v1/jobs/" + job["id"], None, "DELETE", **self.rights)[0], 200)
+        job = self.job_when(job, lambda job: job["state"] != "running")
+        self.assertEqual((job["state"], job["message"]), ("failed", "it was cancelled"))
+
+        job = begun()
+        station.process.kill()
+        job = self.job_when(job, lambda job: job["state"] != "running")
+        self.assertEqual(job["state"], "failed")
+        self.assertIn('the sensor "roof" was lost meanwhile', job["message"])
+        self.assertFalse(os.path.exists(self.page))
+
+    def test_nothing_is_calibrated_without_rights_or_with_a_mistake(self):
+        self.start_daemon_for_setup('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')
+        zero = {"calibration": "zero", "for_s": 5}
+        kept = {"before": {"gain": 1}, "after": {"gain": 2}}
+        for path, body, method in (("/mast/calibrate", zero, None), ("/mast/calibration", kept, None), ("/mast/calibration", None, "DELETE")):
+            self.assertEqual(self.ask("/api/v1/sensors" + path, body, method)[0], 401, path)
+            self.assertEqual(self.ask("/api/v1/sensors" + path, body, method, Origin="http://other.example", **self.rights)[0], 403, path)
+        self.assertEqual(self.ask("/api/v1/calibrations")[0], 401)
+        self.assertEqual(self.set_up("/roof/calibrate", zero)[0], 404)
+        self.assertEqual(self.set_up("/--help/calibrate", zero)[0], 404)
+        self.assertEqual(self.set_up("/mast/calibrate", {"calibration": "north", "reference": "roof"})[0], 404)
+        self.assertEqual(self.set_up("/mast/calibrate", {"calibration": "microphone"})[0], 400)
+        self.assertEqual(self.set_up("/mast/calibration", {"before": {"height": 0}, "after": {"height": 4}})[0], 409)
+        self.assertEqual(self.set_up("/mast/calibration", {"before": {"gain": 1}, "after": {"gain": 1e9}})[0], 409)
+        self.assertFalse(os.path.exists(self.page))
 
     def test_a_damaged_file_of_the_page_is_left_out_and_said(self):
         daemon = self.start_daemon_for_setup('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')

@@ -11,7 +11,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort, calibrationPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -652,6 +652,56 @@ token_file = "${path.join(folder, "token-setup")}"
   assert.equal(await isWider(page, 320), false);
   await screenshot(page, "setup-320-light");
   assert.equal(await page.evaluate(() => document.title.includes("owned")), false);
+  await page.context().close();
+  await kill(station);
+});
+
+test("a sensor is calibrated on the page: stopped, measured, kept, and undone", { timeout: 4 * HANG_MS }, async () => {
+  const station = await start("yuragi-sim", ["nmea", "--tcp", "127.0.0.1:0", "--rate", "5", "--speed", "8", "--direction", "350", "--turbulence", "0"], /127\.0\.0\.1:(\d+)/);
+  const file = configured("calibration.toml", `
+[http]
+listen = "127.0.0.1:${calibrationPort}"
+token_file = "${path.join(folder, "token-calibration")}"
+[[sensor]]
+name = "roof"
+driver = "nmea"
+transport = "tcp"
+host = "127.0.0.1"
+port = ${station.answer[1]}
+`);
+  const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
+  token("--new");
+  await startDaemon(file);
+  const page = await open(`http://127.0.0.1:${calibrationPort}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" }, viewport: { width: 320, height: 800 } });
+  await waitForSentence(page, /^Live: roof, \d\.\d m\/s from the north,/);
+  await page.getByRole("button", { name: "Calibrate a sensor" }).click();
+  await page.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
+  await page.getByRole("button", { name: "Pair", exact: true }).click();
+  await page.waitForSelector("#calibration[open]");
+  await page.waitForSelector("#calibration-preparation:text-matches('^The air at the sensor must not move')");
+  await page.fill("#calibration-time", "1800");
+  await page.click("#calibration-start");
+  await page.waitForSelector("#calibration-progress:text-matches('s left · roof: \\\\d+\\\\.\\\\d m/s')");
+  await page.click("#calibration-stop");
+  await page.waitForSelector("#calibration-error:text('it was cancelled')");
+  assert.equal(await page.isEnabled("#calibration-keep"), false);
+
+  await page.selectOption("#calibration-way", { label: "North: by a landmark" });
+  await page.fill("#calibration-number", "90");
+  await page.waitForSelector("#calibration-preparation:text-matches('the landmark at 90 degrees')");
+  await page.fill("#calibration-time", "5");
+  await page.click("#calibration-start");
+  await page.waitForSelector("#calibration-keep:enabled");
+  assert.match(await page.textContent("#calibration-result"), /The vane reads .*north_offset0(9[89]|10[0-2])/);
+  await assertAccessible(page, "calibration");
+  assert.equal(await isWider(page, 320), false);
+  await screenshot(page, "calibration-320-light");
+  await page.click("#calibration-keep");
+  await page.waitForSelector("#calibration:not([open])", { state: "attached" });
+  await waitForSentence(page, /^Live: roof, \d\.\d m\/s from the east,/);
+  await page.getByRole("button", { name: "Remove the calibration: roof" }).waitFor();
+  await page.getByRole("button", { name: "Undo the last change" }).click();
+  await waitForSentence(page, /^Live: roof, \d\.\d m\/s from the north,/);
   await page.context().close();
   await kill(station);
 });

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "daemon/settings/standard_output.hpp"
+#include "daemon/tools/calibration/calibration_report.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::tools::calibration {
@@ -28,16 +29,19 @@ std::string read_line() {
 
 }  // namespace
 
-Dialog::Dialog(bool takes_yes)
-    : takes_yes_(takes_yes),
-      has_person_(!takes_yes && isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0),
+Dialog::Dialog(bool takes_yes, Report* report)
+    : report_(report),
+      takes_yes_(takes_yes),
+      has_person_(report == nullptr && !takes_yes && isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0),
       is_watched_(isatty(STDERR_FILENO) != 0) {}
 
 void Dialog::print(const std::string& text) const {
+  if (report_ != nullptr) return report_->note(text);
   settings::write_at_once(text + "\n");
 }
 
 void Dialog::wait_until_prepared(const std::string& what) const {
+  if (report_ != nullptr) return;  // whoever started this has prepared it
   print(what);
   if (!has_person_) return;
   settings::write_at_once("Press Enter when ready, Ctrl-C to quit: ");

@@ -4,12 +4,15 @@
 
 namespace yuragi::daemon::tools::calibration {
 
+class Report;
+
 /// Leads a person through a calibration: steps and results on standard output, live values on standard error. If
 /// there is no person (no terminal, or --yes), it never waits.
 class Dialog {
  public:
-  /// `takes_yes`: every confirm() is true, and wait_until_prepared() does not wait.
-  explicit Dialog(bool takes_yes);
+  /// `takes_yes`: every confirm() is true, and wait_until_prepared() does not wait. `report`: there is no person, and
+  /// it gets what is printed; nullptr: standard output does.
+  explicit Dialog(bool takes_yes, Report* report = nullptr);
 
   /// Returns true if there is a person at the terminal.
   bool has_person() const noexcept { return has_person_; }
@@ -30,6 +33,7 @@ class Dialog {
   void show(double elapsed_s, const std::string& values, bool is_last);
 
  private:
+  Report* report_;
   bool takes_yes_;
   bool has_person_;
   bool is_watched_;

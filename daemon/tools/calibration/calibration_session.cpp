@@ -9,6 +9,7 @@
 
 #include "daemon/settings/config_file.hpp"
 #include "daemon/settings/own_token.hpp"
+#include "daemon/settings/page_file.hpp"
 #include "daemon/stream/control_client.hpp"
 #include "engine/base/count_text.hpp"
 
@@ -30,6 +31,10 @@ Stretch parse_part(const std::string& text) {
     throw usage("--part: is \"" + text + "\"; allowed: FROM,TO in seconds, the second larger");
   }
   return {.from_s = from_s, .to_s = to_s};
+}
+
+ParameterValue value_of(const settings::SensorConfig& sensor, const settings::ConfigChange& change) {
+  return (change.table.empty() ? sensor.values : sensor.by_name.at(settings::kCalibrationTable)).all().at(change.key);
 }
 
 std::string key_of(const settings::ConfigChange& change) {
@@ -65,17 +70,21 @@ std::string live_text(const settings::SensorConfig& sensor, const SensorReadings
 
 }  // namespace
 
-Session::Session(const Request& request, double default_duration_s)
-    : request_(request), dialog_(request.takes_yes), duration_s_(request.duration_s.value_or(default_duration_s)) {
+Session::Session(const Request& request, const Way& way)
+    : request_(request),
+      way_(way),
+      duration_s_(request.duration_s.value_or(way.duration_s)),
+      dialog_(request.takes_yes) {
   for (const std::string& part : request_.parts) parse_part(part);
   if (is_live() && !request_.parts.empty()) throw usage("--part needs --recording");
   if (!is_live() && request_.duration_s) throw usage("--for is for live sensors; use --part for a recording");
-  if (!dialog_.has_person() && !request_.takes_yes && !request_.is_dry_run) {
+  if (!dialog_.has_person() && !request_.takes_yes && !request_.is_dry_run && !request_.as_json) {
     throw usage("there is no terminal for questions: add --yes to write, or --dry-run to see the result only");
   }
 
   text_ = settings::read_config_text(request_.config_file);
-  config_ = settings::parse_config(text_, request_.config_file.string());
+  configuration_ = settings::parse_config(text_, request_.config_file.string());
+  config_ = settings::with_page_file(configuration_, request_.config_file);
   if (config_.sensors.front().origin.empty()) {
     throw settings::ConfigError(request_.config_file.string() + ": has no [[sensor]] to calibrate");
   }
@@ -87,6 +96,24 @@ Session::Session(const Request& request, double default_duration_s)
     reference_ = find(request_.reference);
     if (*reference_ == sensor_) throw usage("a sensor cannot be its own reference");
   }
+  if (sensor().driver->calibration != way_.means) {
+    throw usage(way_.means == drivers::sensor::CalibrationMeans::kSoundLevel
+                    ? fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", sensor().name)
+                    : std::string(way_.calibration == "zero"
+                                      ? "a microphone has no zero: its noise in a calm is found while it runs, or set "
+                                        "as its noise_floor"
+                                      : "a microphone is calibrated with `yuragi calibrate microphone`"));
+  }
+  if (request_.as_json) {
+    std::vector<const settings::SensorConfig*> all = {&sensor()};
+    if (reference_) all.push_back(reference());
+    dialog_ = Dialog(false, &report_.emplace(std::move(all), duration_s_));
+  } else if (std::ranges::find(configuration_.sensors, sensor().name, &settings::SensorConfig::name) ==
+             configuration_.sensors.end()) {
+    throw usage(fmt::format("the sensor \"{}\" was set up on the page, and is calibrated there", sensor().name));
+  }
+  if (!config_.page_trouble.empty())
+    dialog_.print("Warning: what the page has set up is not read: " + config_.page_trouble);
 }
 
 void Session::open_source() {
@@ -109,11 +136,11 @@ std::size_t Session::find(const std::string& name) const {
   throw usage(fmt::format("{} has no sensor \"{}\"; there are: {}", request_.config_file.string(), name, known));
 }
 
-CollectedReadings Session::collect(const std::string& preparation) {
+CollectedReadings Session::collect(double number) {
   if (!source_) open_source();
   Stretch stretch{.duration_s = duration_s_};
   if (is_live()) {
-    dialog_.wait_until_prepared("\n" + preparation);
+    dialog_.wait_until_prepared("\n" + preparation_of(way_, number));
   } else if (stretches_ < request_.parts.size()) {
     stretch = parse_part(request_.parts[stretches_]);
   }
@@ -123,6 +150,7 @@ CollectedReadings Session::collect(const std::string& preparation) {
       source_
           ->collect(stretch,
                     [this, &is_shown](double elapsed_s, const CollectedReadings& so_far) {
+                      if (report_) return report_->progress(elapsed_s, so_far);
                       if (is_live())
                         return dialog_.show(elapsed_s, progress_line(elapsed_s, so_far), elapsed_s >= duration_s_);
                       dialog_.show(elapsed_s, fmt::format("{:.0f} s of the recording", elapsed_s), false);
@@ -161,13 +189,19 @@ std::string Session::progress_line(double elapsed_s, const CollectedReadings& co
 }
 
 ParameterValue Session::value_now(const settings::ConfigChange& change) const {
-  return (change.table.empty() ? sensor().values : sensor().by_name.at(settings::kCalibrationTable))
-      .all()
-      .at(change.key);
+  return value_of(sensor(), change);
 }
 
-std::vector<std::string> Session::speed_effect(std::span<const settings::ConfigChange> wanted,
-                                               std::span<const double> indicated_m_s) const {
+ParameterValue Session::value_in_file(const settings::ConfigChange& change) const {
+  return value_of(*std::ranges::find(configuration_.sensors, sensor().name, &settings::SensorConfig::name), change);
+}
+
+void Session::report_point(const wind::judging::CalibrationPoint& point) {
+  if (report_) report_->point(point);
+}
+
+Effect Session::speed_effect(std::span<const settings::ConfigChange> wanted,
+                             std::span<const double> indicated_m_s) const {
   ParameterValues changed = sensor().by_name.at(settings::kCalibrationTable);
   for (const settings::ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
@@ -176,28 +210,53 @@ std::vector<std::string> Session::speed_effect(std::span<const settings::ConfigC
   wind::judging::Calibration now = calibration();
   wind::judging::Calibration then = settings::calibration_of(changed);
   now.height_factor = then.height_factor = 1.0;
-  std::vector<std::string> lines = {"   reading          speed now        speed then"};
+  Effect effect{.indicated_unit = "m/s", .unit = "m/s"};
   for (const double indicated : indicated_m_s) {
     wind::Reading reading;
     reading.speed_m_s = indicated / now.unit_m_s;
-    lines.push_back(fmt::format("{:8.2f} m/s       {:8.2f} m/s   {:6.2f} m/s", indicated,
-                                now.applied_to(reading).speed_m_s, then.applied_to(reading).speed_m_s));
+    effect.rows.push_back(
+        {.indicated = indicated, .now = now.applied_to(reading).speed_m_s, .then = then.applied_to(reading).speed_m_s});
   }
-  return lines;
+  return effect;
 }
 
-void Session::finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect) {
-  std::erase_if(wanted, [this](const settings::ConfigChange& change) { return change.value == value_now(change); });
-  if (wanted.empty()) {
+/// Values that the page has set and this calibration leaves as they are.
+void Session::take_over_page(std::vector<settings::ConfigChange>& wanted) const {
+  for (const Parameter& key : settings::page_calibration_keys()) {
+    settings::ConfigChange change{std::string(settings::kCalibrationTable), std::string(key.name), {}};
+    change.value = value_now(change);
+    const bool is_wanted = std::ranges::any_of(
+        wanted, [&](const settings::ConfigChange& one) { return one.table == change.table && one.key == change.key; });
+    if (!is_wanted && change.value != value_in_file(change)) wanted.push_back(std::move(change));
+  }
+}
+
+void Session::finish(std::vector<settings::ConfigChange> wanted, const Effect& effect) {
+  const auto is_in_use = [this](const settings::ConfigChange& change) { return change.value == value_now(change); };
+  if (std::ranges::all_of(wanted, is_in_use)) {
     dialog_.print("\nThe configuration has these values already: nothing to write.");
     return;
   }
+  if (report_) {
+    std::erase_if(wanted, is_in_use);
+    std::vector<settings::ConfigChange> before = wanted;
+    for (settings::ConfigChange& change : before) change.value = value_now(change);
+    return report_->found(before, wanted, effect);
+  }
+  take_over_page(wanted);
+  std::erase_if(wanted, [this](const settings::ConfigChange& change) { return change.value == value_in_file(change); });
+  if (wanted.empty()) {
+    throw usage(
+        fmt::format("the configuration has these values, but the page's calibration of \"{}\" counts; remove "
+                    "it on the page",
+                    sensor().name));
+  }
   std::string text = "\n";
   for (const settings::ConfigChange& change : wanted) {
-    text += fmt::format("  {:<24} {} -> {}\n", key_of(change), settings::toml_value(value_now(change)),
+    text += fmt::format("  {:<24} {} -> {}\n", key_of(change), settings::toml_value(value_in_file(change)),
                         settings::toml_value(change.value));
   }
-  for (const std::string& line : effect) text += "  " + line + "\n";
+  for (const std::string& line : lines_of(effect)) text += "  " + line + "\n";
   dialog_.print(text);
 
   const auto edited = settings::edit_sensor(text_, sensor().name, wanted);

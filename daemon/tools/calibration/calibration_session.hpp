@@ -11,7 +11,10 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/config_edit.hpp"
 #include "daemon/tools/calibration/calibration_dialog.hpp"
+#include "daemon/tools/calibration/calibration_effect.hpp"
+#include "daemon/tools/calibration/calibration_report.hpp"
 #include "daemon/tools/calibration/calibration_source.hpp"
+#include "daemon/tools/calibration/calibration_ways.hpp"
 #include "engine/wind/judging/calibration_fit.hpp"
 
 namespace yuragi::daemon::tools::calibration {
@@ -27,14 +30,15 @@ struct Request {
   std::optional<std::string> connect;  ///< where the daemon listens; empty: as configured
   bool takes_yes = false;
   bool is_dry_run = false;
+  bool as_json = false;  ///< a dry run that is printed as a Report
 };
 
 /// One calibration of one sensor: opens the sources, collects readings stretch by stretch, and writes the new values to
 /// the configuration. Any function may throw ConfigError or FailureError; then nothing has been written.
 class Session {
  public:
-  /// Reads the configuration and finds the sensors. `default_duration_s`: of a live stretch.
-  Session(const Request& request, double default_duration_s);
+  /// Reads the configuration, with what the page has set up, and finds the sensors.
+  Session(const Request& request, const Way& way);
 
   const settings::SensorConfig& sensor() const { return config_.sensors[sensor_]; }
   /// nullptr: no reference.
@@ -44,34 +48,42 @@ class Session {
   std::size_t part_count() const { return request_.parts.size(); }
   Dialog& dialog() { return dialog_; }
 
-  /// Collects the readings of one stretch: those of the sensor first, then of the reference. `preparation`: what a
-  /// person has to do before; not shown if the source is a recording.
-  CollectedReadings collect(const std::string& preparation);
+  /// Collects the readings of one stretch: those of the sensor first, then of the reference. Before it, a person is
+  /// led through the preparation, unless the source is a recording. `number`: the bearing or the speed that is given.
+  CollectedReadings collect(double number = 0.0);
+
+  /// A known wind that was measured, for a report.
+  void report_point(const wind::judging::CalibrationPoint& point);
 
   /// Shows the changes and their `effect`, asks for confirmation, writes them, and has a running daemon apply them.
-  /// Values that are unchanged are left out.
-  void finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect);
+  /// Values that are unchanged are left out. What the page has calibrated goes into the configuration, too, whose
+  /// values then count again.
+  void finish(std::vector<settings::ConfigChange> wanted, const Effect& effect);
 
-  /// The effect of new calibration values on indicated speeds in m/s: the lines of a table.
-  std::vector<std::string> speed_effect(std::span<const settings::ConfigChange> wanted,
-                                        std::span<const double> indicated_m_s) const;
+  /// The effect of new calibration values on indicated speeds in m/s.
+  Effect speed_effect(std::span<const settings::ConfigChange> wanted, std::span<const double> indicated_m_s) const;
 
  private:
   void open_source();
   void apply_in_daemon();
   std::size_t find(const std::string& name) const;
-  void beware(const CollectedReadings& collected) const;  ///< warns of readings that are unsuitable
-  ParameterValue value_now(const settings::ConfigChange& change) const;
+  void beware(const CollectedReadings& collected) const;                 ///< warns of readings that are unsuitable
+  ParameterValue value_now(const settings::ConfigChange& change) const;  ///< with what the page has set up
+  ParameterValue value_in_file(const settings::ConfigChange& change) const;
+  void take_over_page(std::vector<settings::ConfigChange>& wanted) const;
   std::string progress_line(double elapsed_s, const CollectedReadings& collected) const;
 
   Request request_;
-  Dialog dialog_;
+  const Way& way_;
   sensing::SystemClock clock_;
   double duration_s_;
-  std::string text_;  ///< of the configuration
-  settings::Config config_;
+  std::string text_;                ///< of the configuration
+  settings::Config configuration_;  ///< alone
+  settings::Config config_;         ///< with what the page has set up
   std::size_t sensor_ = 0;
   std::optional<std::size_t> reference_;
+  std::optional<Report> report_;
+  Dialog dialog_;
   std::unique_ptr<Source> source_;  ///< opened by the first collect()
   std::size_t stretches_ = 0;
 };

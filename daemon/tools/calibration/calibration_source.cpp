@@ -19,12 +19,19 @@ constexpr auto kDaemonConnectTimeout = std::chrono::seconds(2);
 constexpr auto kDaemonSilence = std::chrono::seconds(5);
 constexpr auto kDevicePause = std::chrono::milliseconds(20);
 constexpr double kFirstReadingTimeout_s = 90.0;  // a radio station sends every 48 s
+constexpr double kMaxLost_s = 5.0;               // for longer, and a calibration has too few readings to be trusted
 constexpr double kProgressInterval_s = 0.25;
 constexpr std::size_t kReadingsPerProgress = 200'000;  // a second of work or less
 
 Failure unavailable(const std::string& message) {
   return {message, FailureKind::kUnavailable};
 }
+
+/// A sensor's connection, as far as a stretch must know it.
+struct LinkNow {
+  std::string detail;  ///< for a person
+  bool is_lost = false;
+};
 
 bool all_have_readings(const CollectedReadings& collected) {
   return std::ranges::none_of(collected, [](const SensorReadings& sensor) { return sensor.readings.empty(); });
@@ -40,19 +47,21 @@ class LiveStretch {
         clock_(clock),
         progress_(progress),
         begun_(clock.now().mono),
-        collected_(sensors.size()) {}
+        collected_(sensors.size()),
+        lost_from_s_(sensors.size()) {}
 
   void add(std::size_t sensor, const wind::Reading& reading) {
     collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
-  /// Returns true if it is over. Fails if a sensor stays silent; `link_of`: the last report of its link.
+  /// Returns true if it is over. Fails if a sensor stays silent, or is lost meanwhile; `link_of`: the LinkNow of one.
   template <class LinkOf>
   Result<bool, Failure> is_over(const LinkOf& link_of) {
     const double now_s = seconds(clock_.now().mono - begun_);
     if (!all_live_from_s_ && all_have_readings(collected_)) all_live_from_s_ = now_s;
     const double elapsed_s = all_live_from_s_ ? now_s - *all_live_from_s_ : 0.0;
     const bool is_over = all_live_from_s_ && elapsed_s >= duration_s_;
+    if (auto lost = all_live_from_s_ ? lost_sensor(now_s, link_of) : std::nullopt) return std::move(*lost);
     if (is_over || now_s >= next_progress_s_) {
       progress_(elapsed_s, collected_);
       next_progress_s_ = now_s + kProgressInterval_s;
@@ -65,13 +74,29 @@ class LiveStretch {
 
  private:
   template <class LinkOf>
+  std::optional<Failure> lost_sensor(double now_s, const LinkOf& link_of) {
+    for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
+      const LinkNow link = link_of(sensor);
+      if (!link.is_lost) {
+        lost_from_s_[sensor].reset();
+      } else if (now_s - lost_from_s_[sensor].value_or(now_s) >= kMaxLost_s) {
+        return unavailable(
+            fmt::format("the sensor \"{}\" was lost meanwhile ({}); start again", sensors_[sensor]->name, link.detail));
+      } else if (!lost_from_s_[sensor]) {
+        lost_from_s_[sensor] = now_s;
+      }
+    }
+    return std::nullopt;
+  }
+
+  template <class LinkOf>
   Failure silent(const LinkOf& link_of) const {
     std::size_t sensor = 0;
     while (!collected_[sensor].readings.empty()) ++sensor;
     return unavailable(
         fmt::format("the sensor \"{}\" has sent nothing for {:.0f} s ({}); `yuragi sensors watch --raw {}` shows its "
                     "messages",
-                    sensors_[sensor]->name, kFirstReadingTimeout_s, link_of(sensor), sensors_[sensor]->name));
+                    sensors_[sensor]->name, kFirstReadingTimeout_s, link_of(sensor).detail, sensors_[sensor]->name));
   }
 
   const SensorConfigs& sensors_;
@@ -80,6 +105,7 @@ class LiveStretch {
   const Source::Progress& progress_;
   MonoTime begun_;
   CollectedReadings collected_;
+  std::vector<std::optional<double>> lost_from_s_;  ///< of each sensor; nullopt: it is there
   std::optional<double> all_live_from_s_;
   double next_progress_s_ = 0.0;
 };
@@ -105,7 +131,10 @@ class DeviceSource final : public Source {
       for (std::size_t index = 0; index < runners_.size(); ++index) {
         runners_[index]->drain([&](const wind::Reading& reading) { live.add(index, reading); });
       }
-      const auto is_over = live.is_over([this](std::size_t sensor) { return runners_[sensor]->link().detail; });
+      const auto is_over = live.is_over([this](std::size_t sensor) {
+        const sensing::LinkReport link = runners_[sensor]->link();
+        return LinkNow{.detail = link.detail, .is_lost = link.state != wind::LinkState::kConnected};
+      });
       if (!is_over) return is_over.error();
       if (*is_over) return live.take();
     }
@@ -155,7 +184,7 @@ class DaemonSource final : public Source {
     auto client = connect_to_daemon(address_);
     if (!client) return unavailable("the daemon at " + address_ + " no longer replies");
     std::vector<std::optional<std::uint64_t>> counted(sensors_.size());
-    std::vector<std::string> links(sensors_.size(), "unknown to the daemon");
+    std::vector<LinkNow> links(sensors_.size(), {.detail = "unknown to the daemon", .is_lost = true});
 
     LiveStretch live(sensors_, stretch.duration_s, clock_, progress);
     for (;;) {
@@ -164,7 +193,9 @@ class DaemonSource final : public Source {
       for (std::size_t index = 0; index < sensors_.size(); ++index) {
         const wire::SensorStatus* status = find_status(*all, *sensors_[index]);
         if (status == nullptr) continue;
-        links[index] = status->detail;
+        const bool is_lost = status->state == wind::judging::SensorState::kDisconnected ||
+                             status->state == wind::judging::SensorState::kStale;
+        links[index] = {.detail = is_lost ? status->state_reason : status->detail, .is_lost = is_lost};
         // The first message may contain an older reading.
         const bool is_new = counted[index] && *counted[index] != status->readings && status->raw_speed_m_s;
         counted[index] = status->readings;

@@ -1,5 +1,6 @@
 // The page: the daemon's state goes into the views; a clock keeps ages correct between two states.
 import { ArchiveView } from "./archive_view";
+import { CalibrationView } from "./calibration_view";
 import { CameraView } from "./camera_view";
 import { Change } from "./change";
 import { by_id, element, set_text } from "./element";
@@ -33,6 +34,7 @@ const change = new Change(pairing);
 const wind = new WindView(by_id("wind"));
 const sensors = new SensorsView(by_id("sensors"));
 const setup = new SetupView(by_id("setup-place"), change);
+new CalibrationView(by_id("setup-place"), change, () => void setup.ask_now());
 const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
 const history = new HistoryView(by_id("history"));

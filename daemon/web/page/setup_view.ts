@@ -1,4 +1,4 @@
-// Sensors are set up here: found, tried, named and added; those that were added here are removed, and the last change is undone.
+// Sensors are set up here: found, tried, named and added; what was added or calibrated here is removed, and the last change is undone.
 import { Change } from "./change";
 import { by_id, element, set_text, set_text_in } from "./element";
 import { carry_out } from "./job";
@@ -94,12 +94,14 @@ export class SetupView {
   /** What was set up here; nothing is shown to those who may not change it. */
   async ask_now(): Promise<void> {
     try {
-      const { sensors, can_undo } = await ask<SetUp>(PATH);
-      this.removals.replaceChildren(...sensors.map((name) => {
-        const remove = element("button", { type: "button" }, texts.remove_sensor(name));
-        remove.addEventListener("click", () => void this.make(`${PATH}/${encodeURIComponent(name)}`, {}, "DELETE"));
+      const { sensors, calibrated, can_undo } = await ask<SetUp>(PATH);
+      const removal = (text: string, path: string) => {
+        const remove = element("button", { type: "button" }, text);
+        remove.addEventListener("click", () => void this.make(path, {}, "DELETE"));
         return remove;
-      }));
+      };
+      this.removals.replaceChildren(...sensors.map((name) => removal(texts.remove_sensor(name), `${PATH}/${encodeURIComponent(name)}`)),
+        ...calibrated.map((name) => removal(texts.remove_calibration(name), `${PATH}/${encodeURIComponent(name)}/calibration`)));
       this.undo.hidden = !can_undo;
     } catch {
       this.removals.replaceChildren();

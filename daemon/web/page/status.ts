@@ -176,7 +176,7 @@ export interface Job {
   state: "running" | "done" | "failed";
   run_for_s: number;
   message: string;
-  result: Verification | object[] | null;
+  result: Verification | CalibrationState | object[] | null;
   file: { path: string; name: string; bytes: number } | null;
 }
 
@@ -207,9 +207,38 @@ export interface Driver {
   device_setup: string | null;
 }
 
-/** What was set up on the page. */
+/** A way to calibrate a sensor. */
+export interface CalibrationWay {
+  calibration: string;
+  given: "nothing" | "bearing" | "speed" | "reference";
+  duration_s: number;
+  preparation: string;
+}
+
+export interface CalibratedSensor {
+  sensor: string;
+  driver: string;
+  ways: CalibrationWay[];
+}
+
+type CalibrationValues = Record<string, number | string>;
+
+/** What `yuragi calibrate --json` prints; null: not yet known, or nothing to change. */
+export interface CalibrationState {
+  duration_s: number;
+  elapsed_s: number | null;
+  readings: { sensor: string; count: number; speed_m_s: number | null; direction_deg: number | null }[];
+  notes: string[];
+  points: { measured_m_s: number; true_m_s: number }[];
+  before: CalibrationValues | null;
+  after: CalibrationValues | null;
+  effect: { indicated_unit: string; unit: string; rows: { indicated: number; now: number; then: number }[] } | null;
+}
+
+/** What was set up on the page, and the sensors of the configuration that it has calibrated. */
 export interface SetUp {
   sensors: string[];
+  calibrated: string[];
   can_undo: boolean;
 }
 

@@ -146,6 +146,65 @@ TEST(PageFile, ASensorIsWrittenAndTakenOutAgain) {
   EXPECT_FALSE(without_sensor("[[", "roof"));
 }
 
+Config with_calibrated(const Config& config, const std::string& page) {
+  return with_page(config, page, "page.toml");
+}
+
+TEST(PageFile, ACalibrationCountsUntilTheConfigurationHasAnother) {
+  const std::string mast = "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n";
+  const Config config = parse_config(mast + "[sensor.calibration]\noffset = 0.1\nheight = 4\n", "a.toml");
+  const std::vector<ConfigChange> changes = {{"calibration", "gain", 1.25}};
+  const std::string page = *with_calibration("", config, "mast", changes);
+  const Config both = with_calibrated(config, page);
+  EXPECT_EQ(both.sensors[0].calibration.gain, 1.25);
+  EXPECT_EQ(both.sensors[0].calibration.offset_m_s, 0.1);
+  EXPECT_EQ(both.sensors[0].calibration.height_factor, config.sensors[0].calibration.height_factor);
+  EXPECT_THAT(to_toml(both), HasSubstr("gain = 1.25"));
+  ASSERT_EQ(both.page_calibrations.size(), 1U);
+  EXPECT_EQ(both.page_calibrations[0].values, "gain = 1.25");
+  EXPECT_EQ(both.page_calibrations[0].why_not, "");
+  EXPECT_THAT(*calibrations_in(page), ElementsAre("mast"));
+
+  const auto is_left_out = [&page](const std::string& changed, const char* why) {
+    const Config later = with_calibrated(parse_config(changed, "a.toml"), page);
+    EXPECT_EQ(later.sensors[0].calibration.gain, 1.0) << changed;
+    EXPECT_THAT(later.page_calibrations.at(0).why_not, HasSubstr(why));
+  };
+  is_left_out(mast + "[sensor.calibration]\noffset = 0.2\n", "was changed since");
+  is_left_out("[[sensor]]\nname = \"mast\"\ndriver = \"nmea\"\n[sensor.calibration]\noffset = 0.1\n", "was changed");
+  is_left_out("[[sensor]]\nname = \"roof\"\ndriver = \"synthetic\"\n", "no such sensor");
+  const Config later = parse_config(mast, "a.toml");
+  const std::vector<ConfigChange> north = {{"calibration", "north_offset", 5.0}};
+  const Config again = with_calibrated(later, *with_calibration(page, later, "mast", north));
+  EXPECT_EQ(again.sensors[0].calibration.gain, 1.0) << "what does not count any more is gone";
+  EXPECT_EQ(again.sensors[0].calibration.north_offset_deg, 5.0);
+  EXPECT_THAT(*calibrations_in(*without_calibration(page, "mast")), IsEmpty());
+  EXPECT_FALSE(without_calibration(page, "roof"));
+  EXPECT_FALSE(with_calibration("", default_config(), "synthetic", changes)) << "it is in no file";
+}
+
+TEST(PageFile, ACalibrationSetsNothingElse) {
+  const Config config = parse_config("[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n", "a.toml");
+  const std::vector<ConfigChange> changes = {{"calibration", "gain", 1.25}};
+  const std::string sound = *with_calibration("", config, "mast", changes);
+  EXPECT_EQ(refusal_of(sound, config), "");
+  for (const std::string hostile : {"height = 3.0\n", "command = \"true\"\n", "gain = 1000.0\n", "curve = \"5:3\"\n"}) {
+    std::string page = sound;
+    page.replace(page.find("gain = 1.25\n"), 12, hostile);
+    EXPECT_THAT(refusal_of(page, config), HasSubstr("page.toml:")) << hostile;
+  }
+  EXPECT_NE(refusal_of("[calibration]\nsensor = \"mast\"\n", config), "");
+  EXPECT_NE(refusal_of("[[calibration]]\nsensor = \"mast\"\ngain = 2.0\n", config), "") << "what does it replace?";
+}
+
+TEST(PageFile, ASensorOfThePageHasItsCalibrationWithIt) {
+  const std::vector<ConfigChange> changes = {{"calibration", "gain", 1.25}};
+  const std::string page = *with_calibration(kRoof, default_config(), "roof", changes);
+  const Config both = with_page(default_config(), page, "page.toml");
+  EXPECT_EQ(both.sensors[0].calibration.gain, 1.25);
+  EXPECT_THAT(both.page_calibrations, IsEmpty());
+}
+
 class PageFileOfAnInstallation : public testing::Test {
  protected:
   PageFileOfAnInstallation() {

@@ -64,10 +64,22 @@ TEST(JobsTest, OneRunsAtATime_AndTheEndKillsItWithItsChildren) {
   EXPECT_THAT(second.error().message, HasSubstr("verify of wall.windlog"));
   jobs.end();
   EXPECT_EQ(job_of(jobs, id).state, Job::State::kFailed);
-  EXPECT_THAT(job_of(jobs, id).message, HasSubstr("the daemon ends"));
+  EXPECT_THAT(job_of(jobs, id).message, HasSubstr("it was cancelled"));
   std::string process;
   std::ifstream(pid_file) >> process;
   while (!has_ended(process)) std::this_thread::yield();
+}
+
+TEST(JobsTest, ACancelledOneFails_AndTheNextRuns) {
+  Jobs jobs;
+  const std::string id = jobs.start(shell("sleep 1000")).value();
+  EXPECT_TRUE(jobs.cancel(id));
+  EXPECT_FALSE(jobs.cancel("no such id"));
+  const Job job = ended(jobs, id);
+  EXPECT_EQ(job.state, Job::State::kFailed);
+  EXPECT_EQ(job.message, "it was cancelled");
+  EXPECT_TRUE(jobs.cancel(id)) << "it has ended already";
+  EXPECT_EQ(ended(jobs, jobs.start(shell("true")).value()).state, Job::State::kDone);
 }
 
 TEST(JobsTest, ItsFileHasNoNameAnyMore) {

@@ -103,6 +103,31 @@ TEST(HandBody, MistakesNameTheirKey) {
   EXPECT_THAT(mistake(blackout_of("[")), HasSubstr("JSON object"));
   EXPECT_THAT(mistake(camera_of("{}")), HasSubstr("camera: is missing"));
 }
+TEST(CalibrationBody, EachCalibrationTakesWhatIsKnown) {
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"zero","for_s":30})")->duration_s, 30.0);
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"north","bearing_deg":214})")->bearing_deg, 214.0);
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"span","reference":"mast"})")->reference, "mast");
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"span","speed_m_s":3})")->speed_m_s, 3.0);
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"span","points":"3.1:3 10.4:11"})")->points.size(), 2U);
+  for (const char* const mistaken :
+       {"{}", R"({"calibration":"microphone","reference":"mast"})", R"({"calibration":"--yes"})",
+        R"({"calibration":"zero","reference":"mast"})", R"({"calibration":"north"})",
+        R"({"calibration":"north","bearing_deg":361})", R"({"calibration":"north","bearing_deg":"214"})",
+        R"({"calibration":"north","bearing_deg":1,"reference":"mast"})", R"({"calibration":"span","bearing_deg":1})",
+        R"({"calibration":"span","speed_m_s":0})", R"({"calibration":"span","points":"3.1:3; reboot"})",
+        R"({"calibration":"zero","for_s":1801})", R"({"calibration":"zero","recording":"/etc/passwd"})"})
+    EXPECT_FALSE(calibration_order_of(mistaken)) << mistaken;
+}
+TEST(CalibrationBody, WhatIsKeptHasTheValuesBefore) {
+  const auto found =
+      found_calibration_of(R"({"before":{"gain":1,"curve":""},"after":{"gain":1.04,"curve":"0:0 5:6"}})");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->after, (FoundCalibration::Values{{"curve", "0:0 5:6"}, {"gain", "1.04"}}));
+  for (const char* const mistaken :
+       {"{}", R"({"before":{},"after":{}})", R"({"after":{"gain":2}})", R"({"before":{"gain":1},"after":{"offset":2}})",
+        R"({"before":{"gain":1},"after":{"gain":[2]}})", R"({"before":{"gain":1},"after":{"gain":2},"file":"a"})"})
+    EXPECT_FALSE(found_calibration_of(mistaken)) << mistaken;
+}
 TEST(SocketBody, AllKeysAndDefaults) {
   const auto all =
       socket_wish_of(R"({"wind":60,"status":2,"places":["door"],"stream":{"scenes":["flag"],"every":8,"rate":30}})");

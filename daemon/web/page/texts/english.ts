@@ -80,6 +80,31 @@ export const english = {
   undo_sensors: "Undo the last change",
   sensor_works: (state: string) => `It works: ${state}`,
 
+  // Calibration.
+  calibrate_sensor: "Calibrate a sensor",
+  sensor: "Sensor",
+  remove_calibration: (name: string) => `Remove the calibration: ${name}`,
+  calibration_way: "Calibration",
+  calibration_ways: {
+    "zero-nothing": "Zero: in still air", "span-speed": "Speed: in a known wind", "span-reference": "Speed: beside another sensor",
+    "north-bearing": "North: by a landmark", "north-reference": "North: beside another vane",
+  },
+  calibrate_by_command: "A microphone is calibrated by the command `yuragi calibrate microphone`, while the daemon is stopped.",
+  cannot_calibrate: "This sensor cannot be calibrated.",
+  known_speed: "Speed of the wind (m/s)",
+  known_bearing: "Bearing of the landmark, clockwise from true north (degrees)",
+  reference_sensor: "Compare with",
+  calibration_time: "How long (seconds)",
+  calibration_start: "Measure",
+  calibration_stop: "Stop",
+  calibration_keep: "Keep",
+  keeping_restarts: "What you keep can be undone. The daemon is started again with it, which takes some seconds.",
+  readings_so_far: (count: string, wind: string) => `${wind} (${count})`,
+  value_before: "before",
+  value_after: "after",
+  sensor_reads: "The sensor reads",
+  more_winds: "Another known wind makes it more accurate: set it, and measure again.",
+
   // Scenes.
   scenes: "Scenes",
   no_scene: "No scene is configured.",

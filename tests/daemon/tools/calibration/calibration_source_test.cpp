@@ -22,6 +22,7 @@ class AskedSensor final : public drivers::sensor::Sensor {
  public:
   MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
     if (kSpeaks) {
+      sink.link(wind::LinkState::kConnected, "");
       sink.reading({.time = clock.now(), .speed_m_s = 3.0, .direction_deg = 350.0, .gust_m_s = {}});
     } else {
       sink.link(wind::LinkState::kConnecting, "no such port");
@@ -80,6 +81,43 @@ TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
   ASSERT_FALSE(collected);
   EXPECT_EQ(collected.error().kind, FailureKind::kUnavailable);
   EXPECT_THAT(collected.error().message, HasSubstr("the sensor \"mast\" has sent nothing for 90 s (no such port)"));
+}
+
+/// It sends one reading, and is gone.
+class DyingSensor final : public drivers::sensor::Sensor {
+ public:
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
+    if (!is_gone_) {
+      sink.link(wind::LinkState::kConnected, "");
+      sink.reading({.time = clock.now(), .speed_m_s = 3.0, .direction_deg = {}, .gust_m_s = {}});
+    } else {
+      sink.link(wind::LinkState::kConnecting, "its plug is out");
+    }
+    is_gone_ = true;
+    return clock.now().mono + std::chrono::milliseconds(1);
+  }
+
+ private:
+  bool is_gone_ = false;
+};
+
+const drivers::sensor::DriverDescription kDyingDriver{
+    .name = "dying",
+    .summary = "",
+    .parameters = {},
+    .open = [](const ParameterValues&) -> std::unique_ptr<drivers::sensor::Sensor> {
+      return std::make_unique<DyingSensor>();
+    }};
+
+TEST(CalibrationSource, ASensorThatIsLostMeanwhileEndsIt) {
+  ManualClock clock;
+  const settings::SensorConfig roof = settings::default_sensor("roof", kDyingDriver, {});
+  const auto source = make_live_source({&roof}, kNoDaemon, clock).value();
+  const auto collected = source->collect(
+      {.duration_s = 1e6}, [&](double, const CollectedReadings&) { clock.advance(std::chrono::milliseconds(300)); });
+  ASSERT_FALSE(collected);
+  EXPECT_EQ(collected.error().kind, FailureKind::kUnavailable);
+  EXPECT_THAT(collected.error().message, HasSubstr("the sensor \"roof\" was lost meanwhile (its plug is out)"));
 }
 
 TEST(CalibrationSource, ARecordingGivesAPartAndTheSettingsItWasMadeWith) {
