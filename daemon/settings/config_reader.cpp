@@ -142,8 +142,8 @@ class ConfigReader {
     for (const auto& [key, node] : root) {
       if (key.str() == "sensor" && !is_list(node))
         mistake(key.source(), "sensor", "is no list; write its heading as [[sensor]]");
-      if (key.str() != "sensor")
-        mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]]");
+      if (key.str() != "sensor" && key.str() != "look" && key.str() != "scene")
+        mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]], [look], [[scene]]");
     }
     if (std::ranges::all_of(config.sensors, [](const SensorConfig& sensor) { return sensor.origin.empty(); }) &&
         has_sensors(root))

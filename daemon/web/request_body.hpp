@@ -68,6 +68,9 @@ Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
 /// {"driver": name, "parameters": {key: value}}, and if it is to be added "name"
 Result<settings::PageSensor, Failure> sensor_of(std::string_view json, bool has_name);
 
+/// {"look": {key: value}, "scenes": {name: {key: value}}}; each can be left out, but not both
+Result<std::vector<settings::ParameterEdit>, Failure> kept_values_of(std::string_view json);
+
 /// {}, of a request whose path has all
 Result<void, Failure> empty_body(std::string_view json);
 

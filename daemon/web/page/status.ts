@@ -208,6 +208,13 @@ export interface Driver {
 }
 
 /** What was set up on the page. */
+/** The values of [look] and of scenes in the file of the page. */
+export interface Kept {
+  kept: string[];
+  can_undo: boolean;
+  trouble: string | null;
+}
+
 export interface SetUp {
   sensors: string[];
   can_undo: boolean;
