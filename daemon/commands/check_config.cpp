@@ -106,6 +106,7 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   }
   nlohmann::ordered_json json = {
       {"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}, {"alerts", alerts}, {"outputs", outputs}};
+  if (!config.page_file.empty()) json["page"] = {{"file", config.page_file}, {"kept", config.kept}};
   for (const settings::feeds::ListTable& list : settings::feeds::list_tables())
     json[list.name] = list_json(config, list, full);
   if (!full) return json;
@@ -130,7 +131,10 @@ std::string page_calibration_text(const settings::Config& config, const settings
 
 void print_summary(const settings::Config& config, const std::filesystem::path& file) {
   fmt::print("{}: no errors\n", file.string());
-  if (!config.page_file.empty()) fmt::print("{}: no errors, the page's sensors and calibrations\n", config.page_file);
+  if (!config.page_file.empty() && settings::page_warnings(config).empty())
+    fmt::print("{}: no errors; its sensors, calibrations and values are read after the configuration\n",
+               config.page_file);
+  for (const std::string& value : config.kept) fmt::print("  {} is kept on the page\n", value);
   for (const settings::SensorConfig& sensor : config.sensors) {
     fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}{}\n", sensor.name, sensor.driver->name,
                settings::place_text(sensor.blend), settings::gust_length_m(config.wind, sensor),
@@ -190,16 +194,7 @@ void check_config(const CheckOptions& options) {
   const settings::Config config = settings::load_installation(options.file);
   service::check(config);
   if (!config.http.certificate.empty()) http::CertificateFiles(config.http.certificate, config.http.key);
-  if (!config.page_trouble.empty()) {
-    fmt::print(stderr, "warning: what the page has set up is left out, and the configuration alone is read:\n{}\n",
-               config.page_trouble);
-  }
-  for (const settings::PageCalibration& calibration : config.page_calibrations) {
-    if (!calibration.why_not.empty()) {
-      fmt::print(stderr, "warning: {}: the calibration of {} ({}) does not count: {}\n", config.page_file,
-                 calibration.sensor, calibration.values, calibration.why_not);
-    }
-  }
+  for (const std::string& warning : settings::page_warnings(config)) fmt::print(stderr, "warning: {}\n", warning);
   if (options.as_service) return rehearse(config, options);
   for (const std::string& warning : settings::exposed_secrets(config, options.file)) {
     fmt::print(stderr, "warning: {}\n", warning);
@@ -207,6 +202,8 @@ void check_config(const CheckOptions& options) {
   if (options.as_json) {
     print_json(config_json(config, options.full));
   } else if (options.full) {
+    for (const std::string& value : config.kept)
+      fmt::print("# {} is kept on the page, in {}\n", value, config.page_file);
     fmt::print("{}", settings::to_toml(config));
   } else {
     print_summary(config, options.file);
@@ -219,8 +216,10 @@ void add_check_config(CLI::App& app) {
       "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
       "--full prints the whole configuration with every default; \"(secret)\" replaces a password.\n"
       "Warns on standard error if others can read a password.\n"
+      "Values that are kept on the page override the file's and are named.\n"
       "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind), cameras (name, from), "
-      "alerts\n(name, when) and outputs (name, windows); with --full also the values of every table by the keys of the "
+      "alerts\n(name, when), outputs (name, windows) and, if there is one, page (file, kept); with --full also the "
+      "values of every table by the keys of the "
       "configuration, without "
       "secrets.\n"
       "--as-service tries the next boot: what yuragi.service would meet, for its own user (with sudo it can check "

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <linux/close_range.h>
@@ -19,6 +20,7 @@
 #include "daemon/service/hold_back_hangups.hpp"
 #include "daemon/service/service.hpp"
 #include "daemon/settings/config_file.hpp"
+#include "daemon/settings/page_file.hpp"
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/tools/doctor/rehearsal.hpp"
 
@@ -32,14 +34,6 @@ settings::Config config_with_warnings(const RunOptions& options) {
     for (const std::string& warning : settings::exposed_secrets(config, *options.config_file)) {
       spdlog::warn("{}", warning);
     }
-  }
-  for (const settings::PageCalibration& calibration : config.page_calibrations) {
-    if (!calibration.why_not.empty())
-      spdlog::warn("the page's calibration of {} ({}) does not count: {}", calibration.sensor, calibration.values,
-                   calibration.why_not);
-  }
-  if (!config.page_trouble.empty()) {
-    spdlog::warn("what the page has set up is left out, and the configuration alone is read: {}", config.page_trouble);
   }
   return config;
 }
@@ -65,6 +59,7 @@ bool run_once(const RunOptions& options, const std::optional<std::filesystem::pa
   const service::DaemonLog log(options.verbose);
   const settings::Config config = config_with_warnings(options);
   log.set_level(config.log.level);
+  for (const std::string& warning : settings::page_warnings(config)) spdlog::warn("{}", warning);
   service::Options service{.record = record ? record : config.recording.file,
                            .duration_s = options.duration_s,
                            .with_scenes = with_scenes,
@@ -77,7 +72,10 @@ bool run_once(const RunOptions& options, const std::optional<std::filesystem::pa
     service.read_config = [options] { return config_with_warnings(options); };
     service.rehearse = [file = settings::absolute_path(*options.config_file)](const settings::Config& running,
                                                                               const settings::Config& next) {
-      return tools::doctor::next_start_warnings(running, next, file);
+      std::vector<std::string> warnings = settings::page_warnings(next);
+      for (std::string& warning : tools::doctor::next_start_warnings(running, next, file))
+        warnings.push_back(std::move(warning));
+      return warnings;
     };
   }
   return service::Service(config, service).run();

@@ -123,7 +123,7 @@ class OscQueryFeed final : public Feed {
     constexpr const char* kText = "text/plain; charset=utf-8";
     if (!is_known_host(request.host, hosts_))
       return {.status = 421, .content_type = kText, .body = "this is not a name of this machine: use its address\n"};
-    if (!is_same_origin(request.origin, request.host))
+    if (!is_same_origin(request.origin, request.host, request.is_https))
       return {.status = 403, .content_type = kText, .body = "pages of other servers may not read this\n"};
     if (request.is_websocket) {
       if (auto why = sockets_.refusal(request.client))

@@ -175,6 +175,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .query = mark < target.size() ? target.substr(mark + 1) : std::string(),
         .host = field(beast_http::field::host),
         .origin = field(beast_http::field::origin),
+        .fetch_site = text_of(message["Sec-Fetch-Site"]),
         .method_to_come = field(beast_http::field::access_control_request_method),
         .content_type = field(beast_http::field::content_type),
         .authorization = field(beast_http::field::authorization),

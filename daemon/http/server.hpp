@@ -25,6 +25,7 @@ struct Request {
   std::string query = {};   ///< what stands behind the question mark
   std::string host = {};
   std::string origin = {};
+  std::string fetch_site = {};      ///< Sec-Fetch-Site: where the page stands for which a browser sends it
   std::string method_to_come = {};  ///< of a preflight: Access-Control-Request-Method
   std::string content_type = {};
   std::string authorization = {};

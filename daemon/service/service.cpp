@@ -292,7 +292,8 @@ class Service::Io {
       settings.history = [this](unsigned hours, const history::Reader::Reply& reply) { history_->ask(hours, reply); };
     }
     if (options_.can_be_restarted && !options_.config_file.empty()) {
-      settings.archive.restart = [this] { asio::post(io_, [this] { restart_soon(); }); };
+      settings.archive.taking_over = {.restart = [this] { asio::post(io_, [this] { restart_soon(); }); },
+                                      .reload = [this] { asio::post(io_, [this] { reload({}, {}); }); }};
     }
     settings.log = options_.log_tail;
     settings.faults = options_.fault_counter;

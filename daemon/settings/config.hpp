@@ -77,9 +77,12 @@ struct Config {
   feeds::Config feeds;                 ///< made of them
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC if no camera has a time
 
-  std::string page_file = {};     ///< whose sensors are the last ones (load_installation()); empty: none
-  std::string page_trouble = {};  ///< why that file is left out, each line as in a ConfigError; empty: it is not
-  std::vector<PageCalibration> page_calibrations = {};  ///< those in that file
+  // Of page.toml (load_installation()):
+  std::string page_file = {};     ///< the file, whose sensors are the last ones; empty: there is none
+  std::string page_trouble = {};  ///< why its sensors are left out, each line as in a ConfigError; empty: they are not
+  std::vector<PageCalibration> page_calibrations = {};
+  std::vector<std::string> kept = {};         ///< the values that it overrides: "[look] haze", "scene elm: height"
+  std::vector<std::string> passed_over = {};  ///< the values in it that cannot be used, each as in a ConfigError
 
   /// The values of config_tables(), from which the members above were made. Only for writing, comparing and changing
   /// them.
@@ -114,9 +117,10 @@ Config listening_at(Config config, const std::string& address);
 /// ConfigError with every error found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
-/// The configuration with the page's file (page_file.hpp), which has nothing but [[sensor]], with names of their own
-/// and keys that the page may set, and [[calibration]] of sensors of the configuration. The synthetic sensor of a file
-/// without any is replaced. Throws ConfigError with every error found in this text.
+/// The configuration with the page's file (page_file.hpp): its sensors, with names of their own and keys that the page
+/// may set, and its calibrations of sensors of the configuration. Besides these that file has only [look] and
+/// [[scene]], which are not read here. The synthetic sensor of a file without any is replaced. Throws ConfigError with
+/// every error found in this text.
 Config with_page(const Config& config, std::string_view toml_text, const std::string& source_name);
 
 /// The largest configuration that is read, in bytes: many times what any installation needs.

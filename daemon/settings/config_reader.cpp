@@ -141,12 +141,13 @@ class ConfigReader {
   /// The file of the page: adds its sensors, and sets its calibrations of others.
   void add_page(const toml::table& root, Config& config) {
     for (const auto& [key, node] : root) {
-      const bool is_known = key.str() == "sensor" || key.str() == kCalibrationTable;
-      if (is_known && !is_list(node))
+      const bool is_list_of_tables = key.str() == "sensor" || key.str() == kCalibrationTable;
+      if (is_list_of_tables && !is_list(node))
         mistake(key.source(), std::string(key.str()),
                 fmt::format("is no list; write its heading as [[{}]]", key.str()));
-      if (!is_known)
-        mistake(key.source(), std::string(key.str()), "is not for the page; allowed: [[sensor]], [[calibration]]");
+      if (!is_list_of_tables && key.str() != "look" && key.str() != "scene")
+        mistake(key.source(), std::string(key.str()),
+                "is not for the page; allowed: [[sensor]], [[calibration]], [look], [[scene]]");
     }
     for_each_table(root, kCalibrationTable, kMaxSensors,
                    [&](const toml::table& entry) { read_page_calibration(entry, config); });

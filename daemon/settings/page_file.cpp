@@ -14,8 +14,10 @@
 #include "daemon/settings/config_file.hpp"
 #include "daemon/settings/own_token.hpp"
 #include "daemon/settings/same_device.hpp"
+#include "engine/base/printable_text.hpp"
 #include "engine/platform/whole_file.hpp"
 #include "engine/tables/parse_toml.hpp"
+#include "engine/tables/toml_values.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -23,7 +25,8 @@ namespace {
 constexpr const char* kFileName = "page.toml";
 constexpr const char* kServicePage = "/var/lib/yuragi/page.toml";
 constexpr const char* kHead =
-    "# The sensors that were set up on the page. Written by yuragi; `yuragi check-config` shows what it amounts to.\n";
+    "# The sensors, calibrations and values that were set on the page. Written by yuragi; `yuragi check-config` shows "
+    "the result.\n";
 constexpr std::string_view kDevices = "/dev/";
 constexpr std::string_view kBareKey = "abcdefghijklmnopqrstuvwxyz0123456789_";
 
@@ -136,6 +139,12 @@ const toml::array* list_in(const toml::table& root) {
   return root["sensor"].as_array();
 }
 
+std::string written(const toml::table& root) {
+  std::ostringstream out;
+  out << kHead << '\n' << root << '\n';
+  return out.str();
+}
+
 /// The first table of a list for which `is_it` holds; null: there is none.
 template <class IsIt>
 toml::table* table_in(toml::table& root, const char* list, const IsIt& is_it) {
@@ -150,12 +159,6 @@ toml::table* table_in(toml::table& root, const char* list, const IsIt& is_it) {
 void put(toml::table& table, std::string_view key, const ParameterValue& value) {
   if (const auto* number = std::get_if<double>(&value)) table.insert_or_assign(key, *number);
   if (const auto* text = std::get_if<std::string>(&value)) table.insert_or_assign(key, *text);
-}
-
-std::string text_with_head(const toml::table& root) {
-  std::ostringstream out;
-  out << kHead << '\n' << root << '\n';
-  return out.str();
 }
 
 /// The table for the calibration of a sensor of the configuration: the one that is there if it still counts, otherwise
@@ -178,6 +181,95 @@ toml::table& calibration_of_configured(toml::table& root, const SensorConfig& se
   table->insert(kCalibrated, sensor.name);
   table->insert(kReplaced, std::move(replaced));
   return *table;
+}
+
+/// A value of [look] or of a scene, and its place in the file.
+struct KeptValue {
+  ParameterEdit edit;
+  std::string place = {};
+};
+
+/// Collects the values of a page's text. What is no value is put into `passed_over`.
+class KeptReader {
+ public:
+  KeptReader(const std::string& source_name, std::vector<std::string>& passed_over)
+      : places_(source_name), passed_over_(passed_over) {}
+
+  std::vector<KeptValue> read(const toml::table& root) {
+    if (const toml::node* const look = root.get("look")) add_table(*look, "");
+    const toml::node* const scenes = root.get("scene");
+    if (scenes == nullptr) return std::move(values_);
+    const toml::array* const list = scenes->as_array();
+    if (list == nullptr) pass_over(*scenes, "scene: is no list; write its heading as [[scene]]");
+    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+      const toml::node& entry = *list->get(i);
+      const auto name = entry.is_table() ? (*entry.as_table())["name"].value<std::string>() : std::nullopt;
+      if (name && !name->empty()) {
+        add_table(entry, *name);
+      } else {
+        pass_over(entry, "scene.name: is missing");
+      }
+    }
+    return std::move(values_);
+  }
+
+ private:
+  void add_table(const toml::node& node, const std::string& scene) {
+    const toml::table* const table = node.as_table();
+    if (table == nullptr) return pass_over(node, "look: is a value; write it as a table, [look]");
+    for (const auto& [key, each] : *table) {
+      if (!scene.empty() && key.str() == "name") continue;
+      if (const auto value = tables::parameter_value_of(each)) {
+        values_.push_back({{scene, std::string(key.str()), value_text(*value)}, places_.place(each.source())});
+      } else {
+        pass_over(each, std::string(key.str()) + ": takes one value: true, a number or a text");
+      }
+    }
+  }
+  void pass_over(const toml::node& where, const std::string& why) {
+    passed_over_.push_back(fmt::format("{}: {}", places_.place(where.source()), why));
+  }
+
+  tables::TomlMistakes places_;
+  std::vector<std::string>& passed_over_;
+  std::vector<KeptValue> values_;
+};
+
+/// As ReloadPlan names it.
+std::string name_of(const ParameterEdit& edit) {
+  return edit.scene.empty() ? "[look] " + edit.key : fmt::format("scene {}: {}", edit.scene, edit.key);
+}
+
+/// The page's text as a table; empty if it is not TOML.
+toml::table table_or_none(std::string_view page_text) {
+  try {
+    return tables::parse_toml(page_text);
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
+
+/// The table of a scene in `root`, which is added if it is missing; with an empty name that of [look].
+toml::table& table_for(toml::table& root, const std::string& scene) {
+  if (scene.empty()) {
+    if (!root["look"].is_table()) root.insert_or_assign("look", toml::table{});
+    return *root["look"].as_table();
+  }
+  const auto is_it = [&](const toml::table& one) { return one["name"].value<std::string>() == scene; };
+  if (toml::table* const entry = table_in(root, "scene", is_it)) return *entry;
+  if (!root["scene"].is_array()) root.insert_or_assign("scene", toml::array{});
+  toml::array& list = *root["scene"].as_array();
+  list.push_back(toml::table{{"name", scene}});
+  return *list.back().as_table();
+}
+
+/// Its value as it was checked; null: it has none.
+const ParameterValue* value_in(const Config& config, const ParameterEdit& edit) {
+  const auto scene = std::ranges::find(config.scenes, edit.scene, &SceneConfig::name);
+  if (!edit.scene.empty() && scene == config.scenes.end()) return nullptr;
+  const ParameterValues::Map& values = edit.scene.empty() ? config.by_name.at("look").all() : scene->values.all();
+  const auto found = values.find(edit.key);
+  return found == values.end() ? nullptr : &found->second;
 }
 
 bool can_be_used(const Config& config) {
@@ -241,15 +333,55 @@ Config with_page_file(Config config, const std::filesystem::path& file) {
     config.page_trouble = page.string() + ":1:1: file: " + text.error().message;
     return config;
   }
+  config.page_file = page.string();
+  config = with_page_values(config, *text, page.string());
   try {
     Config both = with_page(config, *text, page.string());
-    both.page_file = page.string();
     if (can_be_used(config)) open_sensors(both.sensors);  // otherwise it is the fault of the configuration
     return both;
   } catch (const std::exception& fault) {
     config.page_trouble = fault.what();
   }
   return config;
+}
+
+Config with_page_values(const Config& config, std::string_view page_text, const std::string& source_name) {
+  std::vector<std::string> passed_over;
+  std::vector<KeptValue> waiting = KeptReader(source_name, passed_over).read(table_or_none(page_text));
+  Config with = config;
+  // Values that contradict the configuration's can go together with others of the file.
+  for (bool is_going_on = true; std::exchange(is_going_on, false);) {
+    std::erase_if(waiting, [&](const KeptValue& value) {
+      auto next = edited(with, config, std::span(&value.edit, 1));
+      if (!next) return false;
+      with = std::move(*next);
+      with.kept.push_back(name_of(value.edit));
+      is_going_on = true;
+      return true;
+    });
+    is_going_on = is_going_on && !waiting.empty();
+  }
+  for (const KeptValue& value : waiting) {
+    const auto refused = edited(with, config, std::span(&value.edit, 1));
+    if (!refused)
+      passed_over.push_back(fmt::format("{}: {}: {}", value.place, refused.error().name, refused.error().message));
+  }
+  for (std::string& line : passed_over) make_printable(line);
+  with.passed_over = std::move(passed_over);
+  return with;
+}
+
+std::vector<std::string> page_warnings(const Config& config) {
+  std::vector<std::string> warnings;
+  if (!config.page_trouble.empty()) warnings.push_back("what the page has set up is left out: " + config.page_trouble);
+  for (const PageCalibration& calibration : config.page_calibrations) {
+    if (!calibration.why_not.empty())
+      warnings.push_back(fmt::format("the page's calibration of {} ({}) does not count: {}", calibration.sensor,
+                                     calibration.values, calibration.why_not));
+  }
+  for (const std::string& value : config.passed_over)
+    warnings.push_back("a value that the page keeps is passed over: " + value);
+  return warnings;
 }
 
 std::string with_sensor(std::string_view page_text, const PageSensor& sensor) {
@@ -278,7 +410,7 @@ Result<std::string, Failure> without_sensor(std::string_view page_text, std::str
       if (entry == nullptr || name_of(*entry) != name) continue;
       list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
       if (list->empty()) root.erase("sensor");
-      return {boost::system::in_place_value, text_with_head(root)};
+      return {boost::system::in_place_value, written(root)};
     }
   } catch (const toml::parse_error&) {
     return not_toml();
@@ -324,7 +456,7 @@ Result<std::string, Failure> with_calibration(std::string_view page_text, const 
     }
     if (table == nullptr) return Failure{"the page's file has a calibration that is no table", FailureKind::kBadData};
     for (const ConfigChange& change : changes) put(*table, change.key, change.value);
-    return {boost::system::in_place_value, text_with_head(root)};
+    return {boost::system::in_place_value, written(root)};
   } catch (const toml::parse_error&) {
     return not_toml();
   }
@@ -339,7 +471,7 @@ Result<std::string, Failure> without_calibration(std::string_view page_text, std
       if (entry == nullptr || (*entry)[kCalibrated].value_or("") != sensor) continue;
       list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
       if (list->empty()) root.erase(kCalibrations);
-      return {boost::system::in_place_value, text_with_head(root)};
+      return {boost::system::in_place_value, written(root)};
     }
   } catch (const toml::parse_error&) {
     return not_toml();
@@ -373,6 +505,59 @@ Result<std::vector<std::string>, Failure> sensors_in(std::string_view page_text)
     return names;
   } catch (const toml::parse_error&) {
     return not_toml();
+  }
+}
+
+Result<std::string, Failure> with_values(std::string_view page_text, std::span<const ParameterEdit> values,
+                                         const Config& edited) {
+  try {
+    toml::table root = tables::parse_toml(page_text);
+    for (const ParameterEdit& edit : values) {
+      const ParameterValue* const value = value_in(edited, edit);
+      if (value == nullptr) continue;
+      toml::table& table = table_for(root, edit.scene);
+      std::visit([&](const auto& plain) { table.insert_or_assign(edit.key, plain); }, printable(*value));
+    }
+    return {boost::system::in_place_value, written(root)};
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+}
+
+Result<std::string, Failure> without_values(std::string_view page_text) {
+  try {
+    toml::table root = tables::parse_toml(page_text);
+    root.erase("look");
+    root.erase("scene");
+    return {boost::system::in_place_value, written(root)};
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+}
+
+Result<std::vector<std::string>, Failure> kept_in(std::string_view page_text) {
+  try {
+    std::vector<std::string> passed_over;
+    std::vector<std::string> names;
+    for (const KeptValue& value : KeptReader("", passed_over).read(tables::parse_toml(page_text)))
+      names.push_back(name_of(value.edit));
+    return names;
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+}
+
+bool have_same_sensors(std::string_view page_text, std::string_view other) {
+  try {
+    const toml::table one = tables::parse_toml(page_text);
+    const toml::table another = tables::parse_toml(other);
+    return std::ranges::all_of(std::array{"sensor", kCalibrations}, [&](const char* list) {
+      const toml::array* const tables = one[list].as_array();
+      const toml::array* const others = another[list].as_array();
+      return tables == nullptr || others == nullptr ? tables == others : *tables == *others;
+    });
+  } catch (const toml::parse_error&) {
+    return false;
   }
 }
 

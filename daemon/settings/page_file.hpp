@@ -11,14 +11,15 @@
 
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/config_edit.hpp"
+#include "daemon/settings/parameter_edit.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::settings {
 
-// page.toml: the sensors that were set up on the page, and calibrations of others. It is read after the configuration,
-// and is hostile until here: whoever may change something on the page must not gain the rights of the daemon's user by
-// it.
+// page.toml: the sensors that were set up on the page, calibrations of others, and the values of [look] and of scenes
+// that are kept there. It is read after the configuration, and is hostile until here: whoever may change something on
+// the page must not gain the rights of the daemon's user by it.
 
 /// The largest file that is read.
 inline constexpr std::size_t kMaxPage_bytes = std::size_t{64} << 10;
@@ -36,16 +37,23 @@ std::optional<std::string> page_refusal(const drivers::sensor::DriverDescription
 std::optional<std::string> page_refusal(const drivers::sensor::DriverDescription& driver, const Parameter& key,
                                         const ParameterValue& value);
 
-/// The configuration as the daemon reads it: with the sensors of its page_file(). If that file has a mistake, or its
-/// sensors cannot be used beside those of the configuration, it is left out, and Config::page_trouble has the reason.
-/// Throws ConfigError for the configuration alone.
+/// The configuration as the daemon reads it: with the values and the sensors of its page_file(). If that file has a
+/// mistake, or its sensors cannot be used beside those of the configuration, they are left out, and
+/// Config::page_trouble has the reason. Throws ConfigError for the configuration alone.
 Config load_installation(const std::filesystem::path& file);
 
 /// The same for a configuration that was read from `file` already.
 Config with_page_file(Config config, const std::filesystem::path& file);
 
-/// The same with another text in place of the page's file, called `source_name` in messages. Throws ConfigError for
-/// either.
+/// The configuration with the values of [look] and of scenes in the page's text: those that edited() allows replace its
+/// own, the others are in Config::passed_over. Unchanged if the text is not TOML. Pure.
+Config with_page_values(const Config& config, std::string_view page_text, const std::string& source_name);
+
+/// What a person is to know of the page's file: what of it is left out or passed over, and why. Pure.
+std::vector<std::string> page_warnings(const Config& config);
+
+/// The configuration with another text in place of the page's file, called `source_name` in messages, without its
+/// values. Throws ConfigError for either.
 Config with_page_checked(const Config& config, std::string_view page_text, const std::string& source_name);
 
 /// A sensor as the page sets it up.
@@ -83,5 +91,19 @@ std::vector<std::pair<std::string_view, ParameterValue>> replaced_by_page(const 
 
 /// The names of its sensors, in order; fails if the text is not TOML. Pure.
 Result<std::vector<std::string>, Failure> sensors_in(std::string_view page_text);
+
+/// The page's file with these values in place of its own of the same keys. `edited`: a configuration that has them.
+/// Fails if the text is not TOML. Pure.
+Result<std::string, Failure> with_values(std::string_view page_text, std::span<const ParameterEdit> values,
+                                         const Config& edited);
+
+/// The page's file without [look] and scenes; fails if the text is not TOML. Pure.
+Result<std::string, Failure> without_values(std::string_view page_text);
+
+/// The names of its values as in Config::kept, also those that are passed over; fails if the text is not TOML. Pure.
+Result<std::vector<std::string>, Failure> kept_in(std::string_view page_text);
+
+/// Returns true if both texts have the same sensors and calibrations; false if one is not TOML. Pure.
+bool have_same_sensors(std::string_view page_text, std::string_view other);
 
 }  // namespace yuragi::daemon::settings

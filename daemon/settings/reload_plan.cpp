@@ -197,6 +197,14 @@ void compare_feeds(Comparison& comparison, const Config& running, const Config& 
   }
 }
 
+/// Adds to the text of each change whose value comes from page.toml that it does.
+void mark_kept(std::vector<std::string>& changes, const std::vector<std::string>& kept) {
+  for (std::string& change : changes) {
+    if (std::ranges::any_of(kept, [&](const std::string& key) { return change.starts_with(key + ": "); }))
+      change += " (kept on the page)";
+  }
+}
+
 }  // namespace
 
 ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_change_scenes) {
@@ -212,6 +220,8 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   next.page_trouble = wanted.page_trouble;
   next.page_file = wanted.page_file;
   next.page_calibrations = wanted.page_calibrations;
+  next.kept = wanted.kept;
+  next.passed_over = wanted.passed_over;
   for (SensorConfig& sensor : next.sensors) {
     const auto found = std::ranges::find(wanted.sensors, sensor.name, &SensorConfig::name);
     if (found != wanted.sensors.end()) compare_sensor(comparison, sensor, *found);
@@ -239,6 +249,7 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   next.lists = wanted.lists;
   next.feeds = wanted.feeds;
   next.clock = wanted.clock;
+  mark_kept(plan.applied, wanted.kept);
   return plan;
 }
 

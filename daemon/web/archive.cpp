@@ -22,7 +22,6 @@
 #include "daemon/web/niced_child.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/recording_list.hpp"
-#include "daemon/web/sensor_setup.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/json_text.hpp"
 
@@ -183,7 +182,13 @@ struct Archive::Shared {
         return setup().add(request.sensor);
       case What::kRemoveSensor:
         return setup().remove(request.name);
-      case What::kUndoSensors:
+      case What::kKept:
+        return setup().list_values();
+      case What::kKeep:
+        return setup().keep(request.values);
+      case What::kForgetKept:
+        return setup().forget_values();
+      case What::kUndoPage:
         return setup().undo();
       case What::kCalibrations:
         return calibrations();
@@ -314,7 +319,7 @@ struct Archive::Shared {
     return send(*found->file);
   }
 
-  SensorSetup setup() const { return {settings.configuration, settings.page, settings.restart}; }
+  PageSetup setup() const { return {settings.configuration, settings.page, settings.taking_over}; }
 
   http::Response drivers() {
     if (known_drivers.empty()) {

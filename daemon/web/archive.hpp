@@ -12,6 +12,7 @@
 #include "daemon/http/server.hpp"
 #include "daemon/settings/page_file.hpp"
 #include "daemon/web/calibration_order.hpp"
+#include "daemon/web/page_setup.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -22,7 +23,7 @@ struct ArchiveSettings {
   std::filesystem::path configuration = {};  ///< empty: the built-in one
   std::string stream = {};                   ///< where the daemon's stream listens; empty: as configured
   std::filesystem::path page = {};           ///< what the page has set up; empty: it sets up nothing
-  std::function<void()> restart = {};        ///< has the daemon started again, soon; on any thread. Empty: it cannot be
+  TakingOver taking_over = {};               ///< of what the page has changed
   std::vector<std::string> program = {"/proc/self/exe"};  ///< the program that carries out jobs
 };
 
@@ -45,18 +46,22 @@ struct ArchiveRequest {
     kTrySensor,    ///< a job
     kAddSensor,
     kRemoveSensor,
-    kUndoSensors,
     kCalibrations,       ///< how each sensor can be calibrated
     kCalibrate,          ///< a job
     kKeepCalibration,    ///< of values that a job has found
     kForgetCalibration,  ///< that the page has made of a sensor of the configuration
+    kKept,               ///< values of [look] and of scenes
+    kKeep,
+    kForgetKept,
+    kUndoPage,
   };
 
   What what = What::kList;
   std::string name = {};             ///< of the recording or the sensor, or the id of the job; hostile
   settings::PageSensor sensor = {};  ///< to try or to add; hostile
   CalibrationOrder calibration = {};
-  FoundCalibration found = {};  ///< to keep; hostile
+  FoundCalibration found = {};                       ///< to keep; hostile
+  std::vector<settings::ParameterEdit> values = {};  ///< to keep; hostile
 };
 
 /// The daemon's files for those who may change something: its recordings, its configuration, and jobs about them

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "daemon/web/problem.hpp"
 #include "engine/base/known_host.hpp"
 
 namespace yuragi::daemon::web {
@@ -20,7 +21,20 @@ bool is_listed(const http::Request& request, std::span<const std::string> origin
 }  // namespace
 
 bool may_read(const http::Request& request, std::span<const std::string> origins) {
-  return is_same_origin(request.origin, request.host) || is_listed(request, origins);
+  return is_own_origin(request) || is_listed(request, origins);
+}
+
+bool is_own_origin(const http::Request& request) {
+  return is_same_origin(request.origin, request.host, request.is_https);
+}
+
+std::optional<http::Response> other_site_refusal(const http::Request& request, std::span<const std::string> origins) {
+  const bool is_of_other_site = request.fetch_site == "cross-site" || request.fetch_site == "same-site";
+  if (!is_of_other_site || !is_of_api(request) || is_listed(request, origins)) return std::nullopt;
+  return problem(
+      403, "Another page's request",
+      "a page of another site sends this: only pages of this daemon and those of [http] origins may read here; "
+      "to open it yourself, type its address");
 }
 
 std::optional<http::Response> preflight_answer(const http::Request& request, std::span<const std::string> origins) {

@@ -98,6 +98,12 @@ class Body {
     refuse(key, "an object");
     return std::nullopt;
   }
+  /// Of what has not been taken, in the order of their names.
+  std::vector<std::string> keys() const {
+    std::vector<std::string> all;
+    for (const auto& [key, value] : object_.items()) all.push_back(key);
+    return all;
+  }
   void require(bool holds, const char* what) {
     if (!holds && !mistake_) mistake_ = what;
   }
@@ -294,6 +300,26 @@ Result<FoundCalibration, Failure> found_calibration_of(std::string_view json) {
                "after: must have keys, and before the same ones");
   if (auto mistake = body.mistake()) return std::move(*mistake);
   return found;
+}
+
+Result<std::vector<settings::ParameterEdit>, Failure> kept_values_of(std::string_view json) {
+  Body body(json);
+  std::vector<settings::ParameterEdit> all;
+  const auto take = [&all](Body& from, const std::string& name, const std::string& scene) {
+    for (auto& [key, value] : from.values(name.c_str(), wire::kMaxParameterEdits))
+      all.push_back({scene, std::move(key), std::move(value)});
+  };
+  take(body, "look", "");
+  if (auto scenes = body.below("scenes")) {
+    for (const std::string& scene : scenes->keys()) {
+      scenes->require(!scene.empty(), "a scene has no name");
+      take(*scenes, scene, scene);
+    }
+    if (auto mistake = scenes->mistake()) return Failure{"scenes: " + mistake->message, FailureKind::kUsage};
+  }
+  body.require(!all.empty(), "look, scenes: are missing: the values to keep");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return all;
 }
 
 Result<void, Failure> empty_body(std::string_view json) {

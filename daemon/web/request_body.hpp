@@ -76,6 +76,9 @@ Result<CalibrationOrder, Failure> calibration_order_of(std::string_view json);
 /// {"before": {key: value}, "after": {key: value}} with the same keys in both
 Result<FoundCalibration, Failure> found_calibration_of(std::string_view json);
 
+/// {"look": {key: value}, "scenes": {name: {key: value}}}; each can be left out, but not both
+Result<std::vector<settings::ParameterEdit>, Failure> kept_values_of(std::string_view json);
+
 /// {}, of a request whose path has all
 Result<void, Failure> empty_body(std::string_view json);
 

@@ -236,6 +236,7 @@ Answer log(const http::Request& request, const Facts& facts) {
 using What = ArchiveRequest::What;
 constexpr std::string_view kRecordings = "/api/v1/recordings";
 constexpr std::string_view kSensors = "/api/v1/sensors";
+constexpr std::string_view kKept = "/api/v1/kept";
 
 /// The name in /api/v1/recordings/NAME/verify; empty if the path has none, or a damaged one.
 std::string name_in(std::string_view path) {
@@ -281,6 +282,12 @@ Answer try_sensor(const http::Request& request, const Facts& /*facts*/) {
   return sensor_request(request, What::kTrySensor);
 }
 
+Answer keep(const http::Request& request, const Facts& /*facts*/) {
+  auto values = kept_values_of(request.body);
+  if (!values) return problem(400, "Not understood", values.error().message);
+  return ArchiveRequest{.what = What::kKeep, .values = std::move(*values)};
+}
+
 constexpr std::array kRoutes = {
     Route{"GET", "/healthz", health},
     Route{"GET", "/metrics", metrics},
@@ -320,13 +327,18 @@ constexpr std::array kRoutes = {
     Route{"POST", kSensors, add_sensor},
     Route{"POST", "/api/v1/sensors/find", job<What::kFindSensors>, true},
     Route{"POST", "/api/v1/sensors/try", try_sensor, true},
-    Route{"POST", "/api/v1/sensors/undo", job<What::kUndoSensors>, true},
+    Route{"POST", "/api/v1/sensors/undo", job<What::kUndoPage>, true},
     Route{"DELETE", "/api/v1/sensors/{name}", archived<What::kRemoveSensor>, true},
 
     Route{"GET", "/api/v1/calibrations", archived<What::kCalibrations>, true},
     Route{"POST", "/api/v1/sensors/{name}/calibrate", calibrate, true},
     Route{"POST", "/api/v1/sensors/{name}/calibration", keep_calibration, true},
     Route{"DELETE", "/api/v1/sensors/{name}/calibration", archived<What::kForgetCalibration>, true},
+
+    Route{"GET", kKept, archived<What::kKept>, true},
+    Route{"POST", kKept, keep, true},
+    Route{"DELETE", kKept, archived<What::kForgetKept>, true},
+    Route{"POST", "/api/v1/kept/undo", job<What::kUndoPage>, true},
 };
 
 /// Takes the first part of a path, up to the next slash, which goes, too.

@@ -83,7 +83,7 @@ std::optional<http::Response> method_refusal(const http::Request& request);
 /// The state of /api/v1/status as the message of a WebSocket: {"status": {...}}; nullopt: nothing is known. Pure.
 std::optional<std::string> status_message(const Facts& facts);
 
-/// Answers a request that is_known_host() and, if it changes something, is_same_origin() has let through. Pure.
+/// Answers a request that is_known_host() and, if it changes something, is_own_origin() has let through. Pure.
 Answer answer_to(const http::Request& request, const Facts& facts);
 
 }  // namespace yuragi::daemon::web

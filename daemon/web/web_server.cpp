@@ -255,6 +255,7 @@ class Server::Thread {
                                "name to [http] hosts"));
     }
     if (auto preflight = preflight_answer(request, settings_.origins)) return reply(std::move(*preflight));
+    if (auto refusal = other_site_refusal(request, settings_.origins)) return reply(std::move(*refusal));
     if (auto refusal = method_refusal(request)) return reply(std::move(*refusal));
     // Before who asks is looked at: those who are to be paired need it.
     if (auto page = page_answer(request)) return reply(std::move(*page));
@@ -262,7 +263,7 @@ class Server::Thread {
       if (auto file = files->answer(request)) return reply(std::move(*file));
     }
     const bool only_reads = request.method == "GET" || request.method == "HEAD";
-    if (!only_reads && !is_same_origin(request.origin, request.host))
+    if (!only_reads && !is_own_origin(request))
       return reply(problem(403, "Another page's request", "only pages of this daemon may change something"));
     // A form of somebody else's page cannot send this type without being asked first.
     if (!only_reads && !request.content_type.starts_with("application/json"))
@@ -272,8 +273,7 @@ class Server::Thread {
     const Trust trust{
         .takes_token = settings_.takes_token, .access = access_ ? &*access_ : nullptr, .pairings = &pairings_};
     // A page of another origin may read, but being on this machine does not make it trusted.
-    const bool trusted =
-        is_trusted(request, trust, utc_s) && (trust.takes_token || is_same_origin(request.origin, request.host));
+    const bool trusted = is_trusted(request, trust, utc_s) && (trust.takes_token || is_own_origin(request));
     const std::string address = client_address(request, settings_.proxies);
     if (trust.takes_token && !trusted && shows_credentials(request)) {
       ++counts_.refused_tokens;

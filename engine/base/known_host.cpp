@@ -43,8 +43,9 @@ bool is_known_host(std::string_view host, std::span<const std::string> names) {
   });
 }
 
-bool is_same_origin(std::string_view origin, std::string_view host) {
+bool is_same_origin(std::string_view origin, std::string_view host, bool is_https) {
   if (origin.empty()) return true;
+  if (is_https && !origin.starts_with("https://")) return false;
   const std::size_t scheme = origin.find("://");
   return scheme != std::string_view::npos && is_equal_name(origin.substr(scheme + 3), host);
 }

@@ -12,7 +12,8 @@ namespace yuragi {
 bool is_known_host(std::string_view host, std::span<const std::string> names);
 
 /// Returns true if `origin`, the "Origin" field of a request, is empty or names a page loaded from the same `host`.
-/// Pure.
-bool is_same_origin(std::string_view origin, std::string_view host);
+/// `is_https`: the request came by TLS, and the page must have, too: one in the clear can be anybody's in the network.
+/// A request in the clear can be that of a page by HTTPS, behind a proxy. Pure.
+bool is_same_origin(std::string_view origin, std::string_view host, bool is_https);
 
 }  // namespace yuragi

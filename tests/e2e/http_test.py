@@ -543,9 +543,74 @@ class Http(unittest.TestCase):
         self.change_and_wait(daemon, "/undo", {})
         self.assertEqual(self.sensors(), ["synthetic"])
 
+    def kept(self, path="", body=None, method=None):
+        code, text = self.ask("/api/v1/kept" + path, body, method, **self.rights)
+        return code, json.loads(text)
+
+    def wait_for_values(self, haze, gain):
+        """Of [look] and of the scene meadow: those in force, and those of the configuration with what is kept."""
+        hangs = time.monotonic() + HANG_S
+        while time.monotonic() < hangs:
+            code, text = self.ask("/api/v1/parameters")
+            groups = {group["scene"]: {one["name"]: one for one in group["parameters"]} for group in json.loads(text).get("parameters", [])}
+            now = code == 200 and [(groups[scene][key]["value"], groups[scene][key]["configured"]) for scene, key in (("", "haze"), ("meadow", "gain"))]
+            if now == [(haze, haze), (gain, gain)]:
+                return
+            time.sleep(0.05)
+        self.fail(f"{now} in place of {haze}, {gain}")
+
+    def test_kept_values_outlive_a_kill_and_a_reload_and_go_back_to_the_configuration(self):
+        daemon = self.start_daemon_for_setup()
+        for body in ({"set": {"haze": 0.6}}, {"scene": "meadow", "set": {"gain": 2}}):
+            self.assertEqual(self.ask("/api/v1/parameters", body, **self.rights)[0], 200)
+        code, answer = self.kept("", {"look": {"haze": 0.6}, "scenes": {"meadow": {"gain": 2}}})
+        self.assertEqual((code, answer), (200, {"message": "2 values are kept"}))
+        self.wait_for_values(0.6, 2)
+        self.assertEqual(daemon.text().count("answering at"), 1, "it is not started again")
+        daemon.process.kill()
+        daemon.process.wait()
+
+        daemon = self.start_daemon_with(self.file)
+        self.wait_for_values(0.6, 2)
+        self.assertEqual(self.ask("/api/v1/parameters", {"set": {"haze": 0.9}}, **self.rights)[0], 200)
+        self.assertEqual(self.ask("/api/v1/reload", {}, **self.rights)[0], 200)
+        self.wait_for_values(0.6, 2)
+        self.assertEqual(self.kept(), (200, {"kept": ["[look] haze", "scene meadow: gain"], "can_undo": True, "trouble": None}))
+        checked = subprocess.run([YURAGI, "check-config", self.file], capture_output=True, text=True, check=True).stdout
+        self.assertIn("  scene meadow: gain is kept on the page\n", checked)
+        shown = json.loads(self.ask("/api/v1/configuration", **self.rights)[1])["configuration"]
+        self.assertEqual((shown["look"]["haze"], shown["page"]), (0.6, {"file": self.page, "kept": ["[look] haze", "scene meadow: gain"]}))
+
+        self.assertEqual(self.kept("/undo", {})[0], 200)
+        self.wait_for_values(0.15, 1)
+        self.assertEqual(self.kept("/undo", {})[0], 200)
+        self.wait_for_values(0.6, 2)
+        self.assertEqual(self.kept("", None, "DELETE")[0], 200)
+        self.wait_for_values(0.15, 1)
+        self.assertEqual(self.kept(), (200, {"kept": [], "can_undo": True, "trouble": None}))
+        self.assertEqual(daemon.text().count("answering at"), 1)
+
+    def test_a_kept_value_of_a_scene_that_is_gone_is_passed_over_and_said(self):
+        daemon = self.start_daemon_for_setup()
+        self.assertEqual(self.kept("", {"look": {"haze": 0.6}, "scenes": {"meadow": {"gain": 2}}})[0], 200)
+        daemon.end()
+        with open(self.file, encoding="utf-8") as file:
+            text = file.read()
+        with open(self.file, "w", encoding="utf-8") as file:
+            file.write(text.replace('kind = "grass"', 'kind = "grass"\nname = "lawn"').replace('name = "meadow"\n', ""))
+        daemon = self.start_daemon_with(self.file)
+        why = r'a value that the page keeps is passed over: .*page\.toml:\d+:\d+: scene: there is no scene "meadow"'
+        self.assertRegex(daemon.text(), why)
+        self.wait_for("/api/v1/status", 200, '"verdict"')
+        checked = subprocess.run([YURAGI, "check-config", self.file], capture_output=True, text=True, check=True)
+        self.assertRegex(checked.stderr, why)
+        self.assertEqual(self.kept()[1]["kept"], ["[look] haze", "scene meadow: gain"])
+
     def test_nothing_is_set_up_without_rights_or_with_a_mistake(self):
         self.start_daemon_for_setup('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')
         roof = {"name": "roof", "driver": "nmea", "parameters": {"transport": "tcp", "host": "127.0.0.1", "port": 4001}}
+        for path, body, method in (("", None, None), ("", {"look": {"haze": 0.5}}, None), ("", None, "DELETE"), ("/undo", {}, None)):
+            self.assertEqual(self.ask("/api/v1/kept" + path, body, method)[0], 401, path)
         requests = (("", roof, None), ("/find", {}, None), ("/try", {"driver": "nmea"}, None), ("/undo", {}, None), ("/mast", None, "DELETE"))
         for path, body, method in requests:
             self.assertEqual(self.ask("/api/v1/sensors" + path, body, method)[0], 401, path)

@@ -11,7 +11,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort, calibrationPort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort, calibrationPort, keepPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -704,6 +704,47 @@ port = ${station.answer[1]}
   await waitForSentence(page, /^Live: roof, \d\.\d m\/s from the north,/);
   await page.context().close();
   await kill(station);
+});
+
+test("a value of the look and of a scene is kept, undone, and goes back to the configuration", { timeout: 4 * HANG_MS }, async () => {
+  const { page, code } = await openFromElsewhere(keepPort, "");
+  const button = (name) => page.locator("#look").getByRole("button", { name, exact: true });
+  const waitForHaze = (text) => page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("${text}")`);
+  const x = page.locator("#look .group:nth-child(2)").getByLabel("x (m)", { exact: true });
+  const waitForX = async (value) => page.waitForFunction(([x, value]) => x.value === value, [await x.elementHandle(), value]);
+  await openLook(page);
+  await waitForHaze("0.15");
+  assert.equal(await button("Keep these values").isVisible(), false, "nothing differs");
+  assert.equal(await button("Back to the configuration").isVisible(), false);
+  await page.getByRole("slider", { name: "haze" }).focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForSelector("#pairing-code", { state: "visible" });
+  await page.fill("#pairing-code", code());
+  await page.keyboard.press("Enter");
+  await waitForHaze("0.155");
+  await x.fill("2.5");
+  await x.press("Enter");
+  await button("Undo: x").waitFor();
+  await button("Keep these values").click();
+  await page.waitForSelector("#toast:text('2 values are kept')");
+  await button("Keep these values").waitFor({ state: "hidden" });
+  await button("Back to the configuration").waitFor();
+  await button("Undo the last change of kept values").waitFor();
+  await assertAccessible(page, "kept values");
+  await screenshot(page, "kept-1920-light");
+
+  await button("Undo the last change of kept values").click();
+  await waitForHaze("0.15");
+  await waitForX("0");
+  await button("Back to the configuration").waitFor({ state: "hidden" });
+  await button("Undo the last change of kept values").click();
+  await waitForHaze("0.155");
+  await waitForX("2.5");
+  await button("Back to the configuration").click();
+  await waitForHaze("0.15");
+  await waitForX("0");
+  await button("Back to the configuration").waitFor({ state: "hidden" });
+  await page.context().close();
 });
 
 test("another machine reads, and pairs before it changes something; hostile names stay text", { timeout: 2 * HANG_MS }, async () => {

@@ -18,6 +18,6 @@ missing = [path for path in (CHROMIUM, *(os.path.join(tools, "node_modules", nam
 if missing or not shutil.which("node"):
     print("skipped: not there:", *(missing or ["node"]), "(config/setup.sh --test installs it)")
     sys.exit(77)
-ports = free_ports([socket.SOCK_STREAM] * 9)
+ports = free_ports([socket.SOCK_STREAM] * 10)
 script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "page_test.mjs")
 sys.exit(subprocess.run(["node", script, CHROMIUM, programs, tools, screenshots, *map(str, ports)], check=False).returncode)

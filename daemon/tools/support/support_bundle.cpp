@@ -86,7 +86,8 @@ constexpr const char* kReadme =
     "Passwords and other secrets are replaced by \"(secret)\". Read it before you send it.\n"
     "\n"
     "configuration.toml       the configuration as it is written\n"
-    "configuration-full.toml  the same with every default\n"
+    "page.toml                what was set on the page: it is read after the configuration, and overrides its values\n"
+    "configuration-full.toml  the result, with every default\n"
     "doctor.txt, doctor.json  what is wrong, and how to fix it\n"
     "status.txt, status.json  how the running daemon does\n"
     "journal-*.txt            the last lines of the log\n"
@@ -106,6 +107,8 @@ void add_status(std::map<std::string, std::string>& files, const BundleRequest& 
 void add_configuration(std::map<std::string, std::string>& files, const BundleRequest& request) {
   if (request.examination.config_file)
     files["configuration.toml"] = configuration_text(*request.examination.config_file);
+  if (request.examination.config && !request.examination.config->page_file.empty())
+    files["page.toml"] = configuration_text(request.examination.config->page_file);
   if (request.examination.config) {
     files["configuration-full.toml"] = settings::to_toml(*request.examination.config);
   } else {

@@ -207,6 +207,13 @@ export interface Driver {
   device_setup: string | null;
 }
 
+/** The values of [look] and of scenes in the file of the page. */
+export interface Kept {
+  kept: string[];
+  can_undo: boolean;
+  trouble: string | null;
+}
+
 /** A way to calibrate a sensor. */
 export interface CalibrationWay {
   calibration: string;

@@ -205,6 +205,89 @@ TEST(PageFile, ASensorOfThePageHasItsCalibrationWithIt) {
   EXPECT_THAT(both.page_calibrations, IsEmpty());
 }
 
+constexpr const char* kMeadow = "[look]\nhaze = 0.2\n\n[[scene]]\nname = \"meadow\"\nkind = \"grass\"\ngain = 1.5\n";
+constexpr const char* kKept = "[look]\nhaze = 0.7\n\n[[scene]]\nname = \"meadow\"\ngain = 2\nshown = false\n";
+
+TEST(KeptValues, OverrideThoseOfTheConfiguration_AndNoOthers) {
+  const Config config = parse_config(kMeadow, "a.toml");
+  const Config both = with_page_values(config, kKept, "page.toml");
+  EXPECT_EQ(both.look.haze, 0.7);
+  EXPECT_EQ(both.look.clouds, config.look.clouds);
+  EXPECT_EQ(both.by_name.at("look").number("haze"), 0.7);
+  EXPECT_EQ(both.scenes[0].wind_gain, 2.0);
+  EXPECT_FALSE(both.scenes[0].is_shown);
+  EXPECT_THAT(both.kept, ElementsAre("[look] haze", "scene meadow: gain", "scene meadow: shown"));
+  EXPECT_THAT(page_warnings(both), IsEmpty());
+}
+
+/// Of a scene that is gone, of a range that has changed, of a file that somebody has edited.
+TEST(KeptValues, ThatCannotBeUsedArePassedOverWithTheirPlace_AndTheOthersAreUsed) {
+  const Config config = parse_config(kMeadow, "a.toml");
+  const auto passed_over = [&config](const std::string& page) {
+    const Config both = with_page_values(config, page + "\n[[scene]]\nname = \"meadow\"\ngain = 2\n", "page.toml");
+    EXPECT_EQ(both.scenes[0].wind_gain, 2.0) << page;
+    return page_warnings(both);
+  };
+  const auto is = [](const std::string& why) {
+    return ElementsAre(StartsWith("a value that the page keeps is passed over: page.toml:" + why));
+  };
+  EXPECT_THAT(passed_over("[[scene]]\nname = \"elm\"\ngain = 2\n"), is("3:8: scene: there is no scene \"elm\""));
+  EXPECT_THAT(passed_over("[look]\nhaze = 7\n"), is("2:8: look.haze: is 7"));
+  EXPECT_THAT(passed_over("[look]\nhaze = \"much\"\n"), is("2:8: look.haze: is a text"));
+  EXPECT_THAT(passed_over("[look]\nhaze = [1]\n"), is("2:8: haze: takes one value"));
+  EXPECT_THAT(passed_over("[look]\nunknown = 1\n"), is("2:11: look.unknown: "));
+  EXPECT_THAT(passed_over("[look]\nground_image = \"/etc/passwd\"\n"),
+              is("2:16: look.ground_image: is read only from"));
+  EXPECT_THAT(passed_over("look = 1\n"), is("1:8: look: is a value"));
+  EXPECT_THAT(passed_over("[[scene]]\ngain = 2\n"), is("1:1: scene.name: is missing"));
+  EXPECT_THAT(passed_over("[[scene]]\nname = \"meadow\"\nkind = \"tree\"\n"), is("3:8: scene.kind: "));
+}
+/// No path and no command: each key that may be kept is one that may be set while the daemon runs.
+TEST(KeptValues, AreThoseAloneThatCanBeSetWhileTheDaemonRuns) {
+  for (const std::string_view kind : {"flag", "curtain", "banner"}) {
+    const Config config = parse_config(fmt::format("[[scene]]\nname = \"a\"\nkind = \"{}\"\n", kind), "a.toml");
+    const Config both = with_page_values(config, "[[scene]]\nname = \"a\"\nimage = \"/etc/passwd\"\n", "page.toml");
+    EXPECT_THAT(both.kept, IsEmpty());
+    EXPECT_THAT(both.passed_over, ElementsAre(HasSubstr("scene.image: is read only from the configuration")));
+  }
+}
+TEST(KeptValues, AreWrittenBesideTheSensors_AndTakenOut) {
+  const Config config = parse_config(kMeadow, "a.toml");
+  const std::vector<ParameterEdit> values{{"", "haze", "0.6"}, {"meadow", "gain", "3"}};
+  const auto next = edited(config, config, values);
+  ASSERT_TRUE(next);
+  const std::string gone = std::string(kRoof) + "[[scene]]\nname = \"elm\"\ngain = 4\n" + kKept;
+  const auto written = with_values(gone, values, *next);
+  ASSERT_TRUE(written);
+  const Config both = with_page_values(config, *written, "page.toml");
+  EXPECT_EQ(both.look.haze, 0.6);
+  EXPECT_EQ(both.scenes[0].wind_gain, 3.0);
+  EXPECT_THAT(both.kept, ElementsAre("[look] haze", "scene meadow: gain", "scene meadow: shown"));
+  EXPECT_THAT(both.passed_over, ElementsAre(HasSubstr("\"elm\""))) << "nothing is lost";
+  EXPECT_THAT(kept_in(*written).value(),
+              ElementsAre("[look] haze", "scene elm: gain", "scene meadow: gain", "scene meadow: shown"));
+  EXPECT_THAT(names_in(with_page(default_config(), *written, "page.toml")), ElementsAre("roof"));
+  EXPECT_TRUE(have_same_sensors(*written, kRoof));
+  EXPECT_FALSE(have_same_sensors(*written, ""));
+  EXPECT_FALSE(have_same_sensors("[[", "[["));
+
+  const auto without = without_values(*written);
+  ASSERT_TRUE(without);
+  EXPECT_THAT(kept_in(*without).value(), IsEmpty());
+  EXPECT_TRUE(have_same_sensors(*without, kRoof));
+  EXPECT_FALSE(with_values("[[", values, *next));
+  EXPECT_FALSE(without_values("[["));
+  EXPECT_FALSE(kept_in("[["));
+}
+TEST(KeptValues, AreNamedInWhatAReloadReports) {
+  const Config config = parse_config(kMeadow, "a.toml");
+  const ReloadPlan plan = plan_reload(config, with_page_values(config, kKept, "page.toml"), true);
+  EXPECT_THAT(plan.applied, ElementsAre("[look] haze: 0.2 -> 0.7 (kept on the page)",
+                                        "scene meadow: gain: 1.5 -> 2.0 (kept on the page)",
+                                        "scene meadow: shown: true -> false (kept on the page)"));
+  EXPECT_THAT(plan.next.kept, testing::SizeIs(3));
+}
+
 class PageFileOfAnInstallation : public testing::Test {
  protected:
   PageFileOfAnInstallation() {
@@ -230,6 +313,14 @@ TEST_F(PageFileOfAnInstallation, IsReadAfterTheConfiguration) {
   EXPECT_EQ(both.page_trouble, "");
   EXPECT_EQ(both.page_file, page_.string());
   EXPECT_THAT(both.sensors.back().origin, StartsWith(page_.string() + ":1:1"));
+}
+
+TEST_F(PageFileOfAnInstallation, ItsValuesAreUsedAlsoIfItsSensorsCannotBe) {
+  write(page_, "[look]\nhaze = 0.7\n[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n");
+  const Config config = load_installation(config_);
+  EXPECT_EQ(config.look.haze, 0.7);
+  EXPECT_THAT(names_in(config), ElementsAre("mast"));
+  EXPECT_THAT(page_warnings(config), ElementsAre(HasSubstr("\"mast\" is in use")));
 }
 
 /// The configuration alone runs.

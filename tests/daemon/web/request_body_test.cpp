@@ -143,5 +143,25 @@ TEST(SocketBody, AllKeysAndDefaults) {
   EXPECT_FALSE(none->stream);
 }
 
+TEST(KeptBody, ValuesOfLookAndOfScenes) {
+  const auto all = kept_values_of(R"({"look":{"haze":0.5},"scenes":{"elm":{"gain":2,"shown":false}}})");
+  ASSERT_TRUE(all) << all.error().message;
+  ASSERT_EQ(all->size(), 3U);
+  EXPECT_EQ(all->at(0).scene + "." + all->at(0).key + "=" + *all->at(0).value, ".haze=0.5");
+  EXPECT_EQ(all->at(2).scene + "." + all->at(2).key + "=" + *all->at(2).value, "elm.shown=false");
+}
+TEST(KeptBody, MistakesNameTheirKey) {
+  const auto mistake = [](std::string_view json) {
+    const auto values = kept_values_of(json);
+    return values ? "none" : values.error().message;
+  };
+  EXPECT_THAT(mistake("{}"), HasSubstr("are missing"));
+  EXPECT_THAT(mistake(R"({"look":1})"), HasSubstr("look: must be an object"));
+  EXPECT_THAT(mistake(R"({"look":{"haze":[1]}})"), HasSubstr("look: must be an object"));
+  EXPECT_THAT(mistake(R"({"scenes":{"elm":1}})"), HasSubstr("scenes: elm: must be an object"));
+  EXPECT_THAT(mistake(R"({"scenes":{"":{"haze":1}}})"), HasSubstr("scenes: a scene has no name"));
+  EXPECT_THAT(mistake(R"({"sensor":{}})"), testing::AnyOf(HasSubstr("missing"), HasSubstr("sensor")));
+}
+
 }  // namespace
 }  // namespace yuragi::daemon::web

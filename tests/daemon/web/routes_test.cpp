@@ -251,9 +251,10 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
                                                : json("meadow");
     return body.dump();
   };
-  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions", "/api/v1/parameters",
-                           "/api/v1/reload", "/api/v1/hand", "/api/v1/blackout", "/api/v1/camera", "/api/v1/sensors",
-                           "/api/v1/sensors/find", "/api/v1/sensors/try", "/api/v1/sensors/undo"}) {
+  for (const char* path :
+       {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions", "/api/v1/parameters", "/api/v1/reload",
+        "/api/v1/hand", "/api/v1/blackout", "/api/v1/camera", "/api/v1/sensors", "/api/v1/sensors/find",
+        "/api/v1/sensors/try", "/api/v1/sensors/undo", "/api/v1/kept", "/api/v1/kept/undo"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
     const auto* const refusal = std::get_if<http::Response>(&answer);
     EXPECT_EQ(refusal, nullptr) << refusal->body;

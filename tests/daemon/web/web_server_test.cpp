@@ -23,6 +23,7 @@
 
 #include "daemon/http/server.hpp"
 #include "daemon/web/access.hpp"
+#include "daemon/web/routes.hpp"
 #include "engine/base/address.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -213,6 +214,29 @@ TEST_F(WebServerTest, NobodyElsesPageSeesOrChangesAnything) {
   EXPECT_THAT(other.post("/api/v1/scenes", body, std::string(kJson) + "Origin: http://127.0.0.1\r\n"),
               StartsWith("HTTP/1.1 200"));
   EXPECT_EQ(asked_, "meadow from here;");
+}
+/// <img src="http://127.0.0.1:7480/api/v1/configuration"> has no origin, and would start a program here.
+TEST_F(WebServerTest, APictureOfAnotherSiteStartsNoWorkAndReadsNothing) {
+  Settings shared = settings();
+  shared.origins = {"https://editor.p5js.org"};
+  Server server(std::move(shared));
+  server.publish_sensors(status_of("roof"), status_of("elsewhere"));
+  Client client(server.local_endpoint());
+  for (const std::string site : {"cross-site", "same-site"}) {
+    const std::string other = "Sec-Fetch-Site: " + site + "\r\n";
+    for (const Route& route : routes()) {
+      const std::string path(route.path);
+      if (!path.starts_with("/api/") || route.method != "GET") continue;
+      EXPECT_THAT(client.get(path, other), StartsWith("HTTP/1.1 403")) << path;
+    }
+    EXPECT_THAT(client.post("/api/v1/scenes", R"({"scene":"meadow"})", kJson + other), StartsWith("HTTP/1.1 403"));
+    EXPECT_THAT(client.get("/api/v1/status", other + "Origin: https://editor.p5js.org\r\n"),
+                StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(client.get("/", other), StartsWith("HTTP/1.1 200")) << "a link to the page";
+  }
+  EXPECT_EQ(asked_, "");
+  for (const std::string site : {"same-origin", "none"})
+    EXPECT_THAT(client.get("/api/v1/status", "Sec-Fetch-Site: " + site + "\r\n"), StartsWith("HTTP/1.1 200")) << site;
 }
 TEST_F(WebServerTest, APageOfAListedOriginReadsTheApiAndChangesNothing) {
   Settings shared = settings();

@@ -24,14 +24,18 @@ TEST(KnownHost, NothingElse) {
 }
 
 TEST(SameOrigin, OfTheHostOrNone) {
-  EXPECT_TRUE(is_same_origin("", "roof:7480")) << "curl names none";
-  EXPECT_TRUE(is_same_origin("http://roof:7480", "roof:7480"));
-  EXPECT_TRUE(is_same_origin("https://Roof:7480", "roof:7480"));
+  EXPECT_TRUE(is_same_origin("", "roof:7480", true)) << "curl names none";
+  EXPECT_TRUE(is_same_origin("http://roof:7480", "roof:7480", false));
+  EXPECT_TRUE(is_same_origin("https://Roof:7480", "roof:7480", true));
+  EXPECT_TRUE(is_same_origin("https://roof:7480", "roof:7480", false)) << "a proxy speaks HTTPS";
+}
+TEST(SameOrigin, APageInTheClearIsNotThatOfHttps) {
+  EXPECT_FALSE(is_same_origin("http://roof:7480", "roof:7480", true));
 }
 TEST(SameOrigin, AnotherPort_AnotherName_OrNull) {
   for (const char* origin : {"http://roof", "http://roof:80", "http://evil.example", "null", "roof:7480",
                              "http://roof:7480.evil.example", "http://evil.example/roof:7480"}) {
-    EXPECT_FALSE(is_same_origin(origin, "roof:7480")) << origin;
+    EXPECT_FALSE(is_same_origin(origin, "roof:7480", false)) << origin;
   }
 }
 

@@ -133,7 +133,10 @@ export const english = {
 
   // Look.
   look: "Look",
-  look_lasts: "Changes last until the configuration is read again.",
+  look_lasts: "Changes last until the configuration is read again, unless you keep them.",
+  keep: "Keep these values",
+  back_to_configuration: "Back to the configuration",
+  undo_kept: "Undo the last change of kept values",
   look_of_all: "Light, sky and ground",
   undo: "Undo",
   undo_of: (name: string) => `Undo: ${name}`,

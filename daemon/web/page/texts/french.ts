@@ -126,7 +126,10 @@ export const french: Texts = {
   camera_of_time: "selon l’heure",
 
   look: "Aspect",
-  look_lasts: "Les changements durent jusqu’à la prochaine lecture de la configuration.",
+  look_lasts: "Les changements durent jusqu’à la prochaine lecture de la configuration, sauf si vous les gardez.",
+  keep: "Garder ces valeurs",
+  back_to_configuration: "Revenir à la configuration",
+  undo_kept: "Annuler le dernier changement des valeurs gardées",
   look_of_all: "Lumière, ciel et sol",
   undo: "Annuler la modification",
   undo_of: (name) => `Annuler : ${name}`,

@@ -125,7 +125,10 @@ export const german: Texts = {
   camera_of_time: "nach der Tageszeit",
 
   look: "Aussehen",
-  look_lasts: "Änderungen gelten, bis die Konfiguration neu gelesen wird.",
+  look_lasts: "Änderungen gelten, bis die Konfiguration neu gelesen wird, außer Sie behalten sie.",
+  keep: "Diese Werte behalten",
+  back_to_configuration: "Zurück zur Konfiguration",
+  undo_kept: "Letzte Änderung der behaltenen Werte zurücknehmen",
   look_of_all: "Licht, Himmel und Boden",
   undo: "Rückgängig",
   undo_of: (name) => `Rückgängig: ${name}`,

@@ -125,7 +125,10 @@ export const japanese: Texts = {
   camera_of_time: "時刻に応じて",
 
   look: "見た目",
-  look_lasts: "変更は、設定が次に読み込まれるまで有効です。",
+  look_lasts: "変更は設定を読み直すまで有効です。保存すると、その後も有効です。",
+  keep: "この値を保存",
+  back_to_configuration: "設定ファイルの値に戻す",
+  undo_kept: "保存した値の最後の変更を取り消す",
   look_of_all: "光・空・地面",
   undo: "元に戻す",
   undo_of: (name) => `元に戻す：${name}`,

@@ -1,5 +1,3 @@
-#include "daemon/web/sensor_setup.hpp"
-
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +13,7 @@
 
 #include "daemon/settings/config.hpp"
 #include "daemon/web/archive.hpp"
+#include "daemon/web/page_setup.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::web {
@@ -25,15 +24,15 @@ using testing::IsEmpty;
 
 constexpr const char* kMast = "[http]\ntoken_file = \"token\"\n[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n";
 
-class SensorSetupTest : public testing::Test {
+class PageCalibrationTest : public testing::Test {
  protected:
-  SensorSetupTest() { write(config_, kMast); }
+  PageCalibrationTest() { write(config_, kMast); }
 
   static void write(const std::filesystem::path& file, const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
   }
-  SensorSetup setup() {
-    return {config_, page_, [this] { ++restarts_; }};
+  PageSetup setup() {
+    return {config_, page_, {.restart = [this] { ++restarts_; }, .reload = [] {}}};
   }
   http::Response keep(const std::string& sensor, const FoundCalibration& found) {
     return setup().calibrate(sensor, found);
@@ -52,7 +51,7 @@ class SensorSetupTest : public testing::Test {
   int restarts_ = 0;
 };
 
-TEST_F(SensorSetupTest, ACalibrationIsKept_ForgottenAndUndone) {
+TEST_F(PageCalibrationTest, ACalibrationIsKept_ForgottenAndUndone) {
   EXPECT_EQ(keep("mast", {.before = {{"gain", "1"}, {"offset", "0"}}, .after = {{"gain", "1.04"}, {"offset", "-0.3"}}})
                 .status,
             200U);
@@ -70,7 +69,7 @@ TEST_F(SensorSetupTest, ACalibrationIsKept_ForgottenAndUndone) {
   EXPECT_EQ(restarts_, 4);
 }
 
-TEST_F(SensorSetupTest, ASensorOfThePageIsCalibratedInItsOwnEntry) {
+TEST_F(PageCalibrationTest, ASensorOfThePageIsCalibratedInItsOwnEntry) {
   ASSERT_EQ(setup().add({.name = "roof", .driver = "synthetic"}).status, 200U);
   EXPECT_EQ(keep("roof", {.before = {{"gain", "1"}}, .after = {{"gain", "1.2"}}}).status, 200U);
   EXPECT_EQ(gain_of(1), 1.2);
@@ -79,7 +78,7 @@ TEST_F(SensorSetupTest, ASensorOfThePageIsCalibratedInItsOwnEntry) {
   EXPECT_EQ(installation().sensors.size(), 1U);
 }
 
-TEST_F(SensorSetupTest, ACalibrationThatBeganFromOtherValuesIsRefused) {
+TEST_F(PageCalibrationTest, ACalibrationThatBeganFromOtherValuesIsRefused) {
   write(config_, std::string(kMast) + "[sensor.calibration]\ngain = 1.1\n");
   const http::Response refusal = keep("mast", {.before = {{"gain", "1"}}, .after = {{"gain", "1.04"}}});
   EXPECT_EQ(refusal.status, 409U);
@@ -87,7 +86,7 @@ TEST_F(SensorSetupTest, ACalibrationThatBeganFromOtherValuesIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(page_));
 }
 
-TEST_F(SensorSetupTest, OnlyWhatACalibrationFindsIsKept_AndOnlyWithinItsLimits) {
+TEST_F(PageCalibrationTest, OnlyWhatACalibrationFindsIsKept_AndOnlyWithinItsLimits) {
   EXPECT_EQ(keep("roof", {.before = {{"gain", "1"}}, .after = {{"gain", "1.04"}}}).status, 404U);
   for (const auto& [key, before, after] :
        {std::array{"height", "0", "4"}, std::array{"gain", "1", "1000"}, std::array{"gain", "1", "strong"},
@@ -98,13 +97,13 @@ TEST_F(SensorSetupTest, OnlyWhatACalibrationFindsIsKept_AndOnlyWithinItsLimits) 
   EXPECT_EQ(restarts_, 0);
 }
 
-TEST_F(SensorSetupTest, WithoutATokenNothingIsCalibrated) {
+TEST_F(PageCalibrationTest, WithoutATokenNothingIsCalibrated) {
   write(config_, "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n");
   EXPECT_EQ(keep("mast", {.before = {{"gain", "1"}}, .after = {{"gain", "1.04"}}}).status, 409U);
   EXPECT_EQ(setup().calibration_refusal("mast", "")->status, 409U);
 }
 
-class CalibrationJobTest : public SensorSetupTest {
+class CalibrationJobTest : public PageCalibrationTest {
  protected:
   /// What would be called, a word a line.
   std::string command_of(const std::string& sensor, const CalibrationOrder& order) {

@@ -1,4 +1,4 @@
-#include "daemon/web/sensor_setup.hpp"
+#include "daemon/web/page_setup.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -68,23 +68,24 @@ std::string for_the_page(const std::string& described) {
   return json_text(ordered_json{{"drivers", std::move(all)}}, 2) + "\n";
 }
 
-SensorSetup::SensorSetup(fs::path configuration, fs::path page, std::function<void()> restart)
-    : configuration_(std::move(configuration)), page_(std::move(page)), restart_(std::move(restart)) {}
+PageSetup::PageSetup(fs::path configuration, fs::path page, TakingOver taking_over)
+    : configuration_(std::move(configuration)), page_(std::move(page)), taking_over_(std::move(taking_over)) {}
 
-fs::path SensorSetup::before() const {
+fs::path PageSetup::before() const {
   return page_.string() + ".before";
 }
 
-/// Without the page's part. Fails if the page may set up nothing.
-Result<settings::Config, Failure> SensorSetup::configuration() const {
+/// Without the page's part. Fails if the page may change nothing.
+Result<settings::Config, Failure> PageSetup::configuration() const {
   if (configuration_.empty() || page_.empty())
     return Failure{"the daemon runs without a configuration file: start it with `yuragi run --config FILE`"};
-  if (!restart_) return Failure{"this daemon cannot be started again by the page"};
+  if (!taking_over_.restart || !taking_over_.reload) return Failure{"this daemon cannot be started again by the page"};
   try {
     settings::Config config = settings::load_config(configuration_);
     if (config.http.token_file.empty())
-      return Failure{"only a paired browser may set up sensors: set [http] token_file in the configuration"};
-    if (auto refusal = settings::control_refusal(config.stream.control, true, "sensors cannot be set up"))
+      return Failure{
+          "only a paired browser may change the file of the page: set [http] token_file in the configuration"};
+    if (auto refusal = settings::control_refusal(config.stream.control, true, "the file of the page cannot be changed"))
       return Failure{std::move(*refusal)};
     return config;
   } catch (const settings::ConfigError& error) {
@@ -94,7 +95,7 @@ Result<settings::Config, Failure> SensorSetup::configuration() const {
 }
 
 /// Empty if there is no such file.
-Result<std::string, Failure> SensorSetup::text_of(const fs::path& file) const {
+Result<std::string, Failure> PageSetup::text_of(const fs::path& file) const {
   std::error_code error;
   if (!fs::exists(file, error) && !error) return {boost::system::in_place_value, std::string()};
   auto text = platform::read_whole(file, settings::kMaxPage_bytes);
@@ -103,7 +104,7 @@ Result<std::string, Failure> SensorSetup::text_of(const fs::path& file) const {
 }
 
 /// Without and with the page's part. Fails if the page may set up nothing, or its part has a mistake.
-Result<SensorSetup::Installation, Failure> SensorSetup::installation() const {
+Result<PageSetup::Installation, Failure> PageSetup::installation() const {
   auto config = configuration();
   if (!config) return config.error();
   auto text = text_of(page_);
@@ -116,10 +117,13 @@ Result<SensorSetup::Installation, Failure> SensorSetup::installation() const {
   }
 }
 
-Result<void, Failure> SensorSetup::check(const std::string& text) const {
+/// `changes_sensors`: otherwise they are as they were, and a mistake in them is no matter of this change.
+Result<void, Failure> PageSetup::check(const std::string& text, bool changes_sensors) const {
   const auto config = configuration();
   if (!config) return config.error();
-  if (text.size() > settings::kMaxPage_bytes) return Failure{"too many sensors: the file of the page is full"};
+  if (text.size() > settings::kMaxPage_bytes)
+    return Failure{"the file of the page is full: remove sensors that were added there"};
+  if (!changes_sensors) return {};
   try {
     settings::with_page_checked(*config, text, kPage);
     return {};
@@ -128,27 +132,26 @@ Result<void, Failure> SensorSetup::check(const std::string& text) const {
   }
 }
 
-http::Response SensorSetup::list() const {
+http::Response PageSetup::list() const {
   const auto text = text_of(page_);
   const auto names = text ? settings::sensors_in(*text) : Result<std::vector<std::string>, Failure>(text.error());
-  std::error_code error;
   const auto calibrated = text ? settings::calibrations_in(*text) : names;
   return {.body = json_text(ordered_json{{"sensors", names ? ordered_json(*names) : ordered_json::array()},
                                          {"calibrated", calibrated ? ordered_json(*calibrated) : ordered_json::array()},
-                                         {"can_undo", !page_.empty() && fs::exists(before(), error)},
+                                         {"can_undo", can_undo(true)},
                                          {"trouble", names ? ordered_json() : ordered_json(names.error().message)}},
                             2) +
                   "\n"};
 }
 
-http::Response SensorSetup::add(const settings::PageSensor& sensor) const {
+http::Response PageSetup::add(const settings::PageSensor& sensor) const {
   const auto text = text_of(page_);
   if (!text) return not_done(text.error().message);
   return replace({boost::system::in_place_value, settings::with_sensor(*text, sensor)},
                  fmt::format("sensor {} was added", sensor.name));
 }
 
-http::Response SensorSetup::remove(const std::string& name) const {
+http::Response PageSetup::remove(const std::string& name) const {
   const auto text = text_of(page_);
   if (!text) return not_done(text.error().message);
   auto without = settings::without_sensor(*text, name);
@@ -157,8 +160,8 @@ http::Response SensorSetup::remove(const std::string& name) const {
   return replace(without, fmt::format("sensor {} was removed", name));
 }
 
-std::optional<http::Response> SensorSetup::calibration_refusal(const std::string& sensor,
-                                                               const std::string& reference) const {
+std::optional<http::Response> PageSetup::calibration_refusal(const std::string& sensor,
+                                                             const std::string& reference) const {
   const auto installed = installation();
   if (!installed) return not_done(installed.error().message);
   for (const std::string* const name : {&sensor, &reference}) {
@@ -168,7 +171,7 @@ std::optional<http::Response> SensorSetup::calibration_refusal(const std::string
   return std::nullopt;
 }
 
-http::Response SensorSetup::calibrate(const std::string& sensor, const FoundCalibration& found) const {
+http::Response PageSetup::calibrate(const std::string& sensor, const FoundCalibration& found) const {
   const auto installed = installation();
   if (!installed) return not_done(installed.error().message);
   const settings::SensorConfig* const known = configured(installed->with_page, sensor);
@@ -190,7 +193,7 @@ http::Response SensorSetup::calibrate(const std::string& sensor, const FoundCali
                  fmt::format("sensor {} was calibrated", sensor));
 }
 
-http::Response SensorSetup::forget_calibration(const std::string& sensor) const {
+http::Response PageSetup::forget_calibration(const std::string& sensor) const {
   const auto text = text_of(page_);
   if (!text) return not_done(text.error().message);
   auto without = settings::without_calibration(*text, sensor);
@@ -199,38 +202,80 @@ http::Response SensorSetup::forget_calibration(const std::string& sensor) const 
   return replace(without, fmt::format("the calibration of {} was removed", sensor));
 }
 
-http::Response SensorSetup::replace(const Result<std::string, Failure>& text, std::string_view done_what) const {
+/// Returns true if the last change was of sensors, or with `sensors` false of values.
+bool PageSetup::can_undo(bool sensors) const {
+  std::error_code error;
+  if (page_.empty() || !fs::exists(before(), error)) return false;
+  const auto now = text_of(page_);
+  const auto then = text_of(before());
+  return now && then && *now != *then && settings::have_same_sensors(*now, *then) != sensors;
+}
+
+http::Response PageSetup::list_values() const {
+  const auto text = text_of(page_);
+  const auto kept = text ? settings::kept_in(*text) : Result<std::vector<std::string>, Failure>(text.error());
+  return {.body = json_text(ordered_json{{"kept", kept ? ordered_json(*kept) : ordered_json::array()},
+                                         {"can_undo", can_undo(false)},
+                                         {"trouble", kept ? ordered_json() : ordered_json(kept.error().message)}},
+                            2) +
+                  "\n"};
+}
+
+http::Response PageSetup::keep(const std::vector<settings::ParameterEdit>& values) const {
+  const auto config = configuration();
+  if (!config) return not_done(config.error().message);
+  const auto text = text_of(page_);
   if (!text) return not_done(text.error().message);
-  if (const auto sound = check(*text); !sound) return not_done(sound.error().message);
+  const auto edited = settings::edited(settings::with_page_values(*config, *text, kPage), *config, values);
+  if (!edited) return not_done(edited.error().name + ": " + edited.error().message);
+  return replace(settings::with_values(*text, values, *edited),
+                 values.size() == 1 ? "1 value is kept" : fmt::format("{} values are kept", values.size()));
+}
+
+http::Response PageSetup::forget_values() const {
+  const auto text = text_of(page_);
+  if (!text) return not_done(text.error().message);
+  const auto kept = settings::kept_in(*text);
+  constexpr const char* kDone = "the values are those of the configuration";
+  if (kept && kept->empty()) {
+    const auto config = configuration();
+    return config ? done(kDone, false) : not_done(config.error().message);
+  }
+  return replace(settings::without_values(*text), kDone);
+}
+
+http::Response PageSetup::replace(const Result<std::string, Failure>& text, std::string_view done_what) const {
+  if (!text) return not_done(text.error().message);
   const auto old = text_of(page_);
   if (!old) return not_done(old.error().message);
+  const bool changes_sensors = !settings::have_same_sensors(*old, *text);
+  if (const auto sound = check(*text, changes_sensors); !sound) return not_done(sound.error().message);
   // The state before is on the disk before the new one replaces it.
   if (const auto kept = write(before(), *old); !kept) return not_done(kept.error().message);
   if (const auto written = write(page_, *text); !written) return not_done(written.error().message);
-  return done(done_what);
+  return done(done_what, changes_sensors);
 }
 
-http::Response SensorSetup::undo() const {
+http::Response PageSetup::undo() const {
   std::error_code error;
   if (page_.empty() || !fs::exists(before(), error)) return not_done("there is nothing to undo");
   const auto text = text_of(before());
   if (!text) return not_done(text.error().message);
-  if (const auto sound = check(*text); !sound) return not_done(sound.error().message);
+  const auto undone = text_of(page_);
+  const bool changes_sensors = !undone || !settings::have_same_sensors(*undone, *text);
+  if (const auto sound = check(*text, changes_sensors); !sound) return not_done(sound.error().message);
   if (renameat2(AT_FDCWD, before().c_str(), AT_FDCWD, page_.c_str(), RENAME_EXCHANGE) != 0)
     return not_done(page_.string() + ": " + std::generic_category().message(errno));
-  return done("the last change was undone");
+  return done("the last change was undone", changes_sensors);
 }
 
-http::Response SensorSetup::done(std::string_view what) const {
-  restart_();
-  return {.body =
-              json_text(ordered_json{{"message",
-                                      fmt::format("{}; the daemon is started again, which takes some seconds", what)}},
-                        2) +
-              "\n"};
+http::Response PageSetup::done(std::string_view what, bool changes_sensors) const {
+  (changes_sensors ? taking_over_.restart : taking_over_.reload)();
+  const std::string_view after = changes_sensors ? "; the daemon is started again, which takes some seconds" : "";
+  return {.body = json_text(ordered_json{{"message", fmt::format("{}{}", what, after)}}, 2) + "\n"};
 }
 
-Result<std::string, Failure> SensorSetup::trial(const settings::PageSensor& sensor) const {
+Result<std::string, Failure> PageSetup::trial(const settings::PageSensor& sensor) const {
   const auto config = configuration();
   if (!config) return config.error();
   const auto text = text_of(page_);
@@ -238,7 +283,7 @@ Result<std::string, Failure> SensorSetup::trial(const settings::PageSensor& sens
   settings::PageSensor named = sensor;
   named.name = "a sensor that is tried";
   std::string alone = settings::with_sensor({}, named);
-  if (const auto sound = check(*text + alone); !sound) return sound.error();
+  if (const auto sound = check(*text + alone, true); !sound) return sound.error();
   return {boost::system::in_place_value, std::move(alone)};
 }
 
