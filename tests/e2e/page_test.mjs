@@ -172,7 +172,7 @@ test("recorded wind: what to do where nothing is recorded; a day and a year of w
   const days = (values) => Array.from({ length: 367 }, (_, day) => (day < 40 || (day > 150 && day < 165) || day === 200 || day === 202 ? null : values(day)));
   const storm = (day) => 4 + 2 * Math.cos(day / 58) + 1.5 * Math.sin(day * day);
   const tower = { name: "tower", min_m_s: days(() => 0.2), mean_m_s: days(storm), max_m_s: days((day) => 2.5 * storm(day) + (day === 300 ? 9 : 0)),
-    direction_deg: days((day) => (200 + 70 * Math.sin(day * 7) + 360) % 360) };
+    direction_deg: days((day) => (day % 3 === 0 ? 290 : 215 + (day % 11))) };
   const year = { begin_s: 1_750_032_000, step_s: 86_400, step_count: 367, files_left_out: 1, sensors: [tower] };
   let askedOfYear = 0;
   await page.route("**/api/v1/history?hours=8784", (route) =>

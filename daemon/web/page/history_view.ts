@@ -20,10 +20,10 @@ const BAND_OPACITY = "40";
 const DAY_S = 86_400;
 const MONTH_S = 30 * DAY_S; // of uPlot, which then takes the calendar's
 const LENGTHS = {
-  day: { hours: 24, marks_s: undefined, format: new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit" }) },
-  week: { hours: 7 * 24, marks_s: [1, 2, 3].map((days) => days * DAY_S), format: new Intl.DateTimeFormat(language, { day: "numeric", month: "short" }) },
-  month: { hours: 31 * 24, marks_s: [2, 4, 7, 14].map((days) => days * DAY_S), format: new Intl.DateTimeFormat(language, { day: "numeric", month: "short" }) },
-  year: { hours: 366 * 24, marks_s: [1, 2, 3, 6].map((months) => months * MONTH_S), format: new Intl.DateTimeFormat(language, { month: "short" }) },
+  day: { hours: 24, space_rem: 5, marks_s: undefined, format: new Intl.DateTimeFormat("en-GB", { hour: "2-digit", minute: "2-digit" }) },
+  week: { hours: 7 * 24, space_rem: 5, marks_s: [1, 2, 3].map((days) => days * DAY_S), format: new Intl.DateTimeFormat(language, { day: "numeric", month: "short" }) },
+  month: { hours: 31 * 24, space_rem: 5, marks_s: [2, 4, 7, 14].map((days) => days * DAY_S), format: new Intl.DateTimeFormat(language, { day: "numeric", month: "short" }) },
+  year: { hours: 366 * 24, space_rem: 3.5, marks_s: [1, 2, 3, 6].map((months) => months * MONTH_S), format: new Intl.DateTimeFormat(language, { month: "short" }) },
 };
 type Length = keyof typeof LENGTHS;
 type Values = (number | null)[];
@@ -60,7 +60,7 @@ export class HistoryView {
   private readonly legend = element("ul", { class: "legend" });
   private readonly left_out = element("p", { class: "empty", hidden: "" });
   private readonly picture = element("div", { hidden: "" }, element("div", { class: "history-row" }, this.plot_place, this.rose.dial), this.legend, this.left_out);
-  private readonly choice = element("fieldset", { class: "buttons", "aria-label": texts.length_shown, hidden: "" });
+  private readonly choice = element("fieldset", { class: "buttons lengths", "aria-label": texts.length_shown, hidden: "" });
   private length: Length = "day";
   private plot: uPlot | undefined;
   private history: History | undefined;
@@ -164,7 +164,7 @@ export class HistoryView {
     const rem = root_px();
     const font = `${Math.round(0.75 * rem)}px system-ui, sans-serif`;
     const axis = { stroke: color("--muted"), font, ticks: { show: false } };
-    const { format, marks_s } = LENGTHS[this.length];
+    const { format, marks_s, space_rem } = LENGTHS[this.length];
     const colors = history.sensors.map((_, index) => color(COLORS[index % COLORS.length] as string));
     const hidden = { width: 0, points: { show: false } };
     const mean = (stroke: string, index: number) => {
@@ -182,7 +182,7 @@ export class HistoryView {
         y: { range: (_plot, _least, most) => [0, Math.max(LEAST_SCALE_M_S, 1.1 * (most ?? 0))] },
       },
       axes: [
-        { ...axis, grid: { show: false }, space: 5 * rem, size: 1.8 * rem, gap: 0.5 * rem, ...(marks_s && { incrs: marks_s }),
+        { ...axis, grid: { show: false }, space: space_rem * rem, size: 1.8 * rem, gap: 0.5 * rem, ...(marks_s && { incrs: marks_s }),
           values: (_plot, splits) => splits.map((time_s) => format.format(new Date(1000 * time_s))) },
         { ...axis, grid: { stroke: color("--line"), width: 1 }, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem,
           values: (_plot, splits) => splits.map(plain_number_text) },
