@@ -38,7 +38,7 @@ bool is_of_means(unsigned hours);
 
 /// Reads the `hours` (1 to kMaxHistory_h) before `now` from a recording or a series of them, also while it is
 /// written. If is_of_means(), what was recorded since the last time is first added to the MeansFile beside it; the
-/// first time this reads the whole recording, at about a million readings a second. Sensors of the same name in several
+/// first time this reads the whole recording, at about 3 million readings a second. Sensors of the same name in several
 /// sessions are one. Fails as windlog::Reader does; `stop` ends it within milliseconds with a failure.
 /// Thread-safe: for different recordings, and for one of means with one of readings. Realtime-safe: no; waits for the
 /// disk.

@@ -177,7 +177,9 @@ TEST(WindHistoryOfMeans, EachReadingCountsOnce_AlsoInTheFileThatGrowsAndIsThenRe
     // The roof's readings are committed later than later ones of the mast.
     const auto at_ms = static_cast<std::int64_t>(number) * kMinute_ms;
     ASSERT_TRUE(writer->append(*mast, test::reading_at(at_ms, 3.0)));
-    if (number > 0) ASSERT_TRUE(writer->append(*roof, test::reading_at(at_ms - kMinute_ms / 2, 3.0)));
+    if (number > 0) {
+      ASSERT_TRUE(writer->append(*roof, test::reading_at(at_ms - kMinute_ms / 2, 3.0)));
+    }
     ASSERT_TRUE(writer->commit());
     for (int again = 0; again < 2; ++again) EXPECT_EQ(readings_of(year(file, 10)), 2 * number + 1);
   }
