@@ -30,6 +30,7 @@ std::string history_json(const WindHistory& history) {
   ordered_json content = {{"begin_s", history.begin_s},
                           {"step_s", history.step_s},
                           {"step_count", history.step_count},
+                          {"files_left_out", history.files_left_out},
                           {"sensors", ordered_json::array()}};
   for (const SensorHistory& sensor : history.sensors) {
     ordered_json& row = content["sensors"].emplace_back();

@@ -63,6 +63,7 @@ namespace asio = boost::asio;
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 /// The interval at which what could not be opened at the start is tried again.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
+constexpr auto kMeansInterval = std::chrono::hours(1);
 /// Until the answer to the request for a restart has been sent.
 constexpr auto kRestartAfter = std::chrono::milliseconds(500);
 
@@ -164,7 +165,10 @@ class Service::Io {
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
-    if (options.record) history_ = make_history(*options.record);
+    if (options.record) {
+      history_ = make_history(*options.record);
+      long_history_ = make_history(*options.record);
+    }
     read_token();
     open_page();
     for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
@@ -210,6 +214,7 @@ class Service::Io {
     step_wind();
     send_status();
     try_again_later();
+    if (long_history_) keep_means_later();
     if (loop_) {
       wait_for_frame();
       loop_->start();
@@ -289,7 +294,9 @@ class Service::Io {
       });
     };
     if (history_) {
-      settings.history = [this](unsigned hours, const history::Reader::Reply& reply) { history_->ask(hours, reply); };
+      settings.history = [this](unsigned hours, const history::Reader::Reply& reply) {
+        (history::is_of_means(hours) ? long_history_ : history_)->ask(hours, reply);
+      };
     }
     if (options_.can_be_restarted && !options_.config_file.empty()) {
       settings.archive.taking_over = {.restart = [this] { asio::post(io_, [this] { restart_soon(); }); },
@@ -351,6 +358,17 @@ class Service::Io {
       if (!trouble->empty()) all.push_back(*trouble);
     }
     return all;
+  }
+
+  /// Adds what was recorded to its means from time to time, also if no page is open: what is deleted later is in them.
+  void keep_means_later() {
+    means_timer_.expires_after(kMeansInterval);
+    means_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      contain("keeping the means of the recording",
+              [this] { long_history_->ask(history::kMaxHistory_h, [](const Result<std::string, Failure>&) {}); });
+      keep_means_later();
+    });
   }
 
   void try_again_later() {
@@ -730,6 +748,7 @@ class Service::Io {
     wind_timer_.cancel();
     status_timer_.cancel();
     again_timer_.cancel();
+    means_timer_.cancel();
     frame_ready_.close();
     io_.stop();
   }
@@ -742,7 +761,8 @@ class Service::Io {
   asio::signal_set signals_{io_};
   Hangups hangups_{io_};
   Terminal terminal_;
-  asio::steady_timer end_timer_{io_}, restart_timer_{io_}, wind_timer_{io_}, status_timer_{io_}, again_timer_{io_};
+  asio::steady_timer end_timer_{io_}, restart_timer_{io_}, wind_timer_{io_}, status_timer_{io_}, again_timer_{io_},
+      means_timer_{io_};
   asio::steady_timer::time_point next_wind_;
   animation::DurationHistogram io_lateness_;  ///< of each step of the wind
   animation::RecentLateness recent_io_lateness_{io_lateness_};
@@ -781,9 +801,10 @@ class Service::Io {
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
-  std::unique_ptr<history::Reader> history_;  ///< null: not recorded
-  std::unique_ptr<web::Server> web_;          ///< null: no [http] listen
-  std::optional<alerts::Alerts> alerts_;      ///< nullopt: no alerts
+  /// Null: not recorded. The second reads what is_of_means(): so the first time, which is long, delays no other.
+  std::unique_ptr<history::Reader> history_, long_history_;
+  std::unique_ptr<web::Server> web_;      ///< null: no [http] listen
+  std::optional<alerts::Alerts> alerts_;  ///< nullopt: no alerts
   Manager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame if it has scenes
 

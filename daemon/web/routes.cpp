@@ -215,7 +215,7 @@ Answer recent_wind(const http::Request& /*request*/, const Facts& facts) {
 }
 
 Answer history(const http::Request& request, const Facts& /*facts*/) {
-  const auto hours = number_in_query(request.query, {.name = "hours", .least = 1, .most = 168, .otherwise = 24});
+  const auto hours = number_in_query(request.query, {.name = "hours", .least = 1, .most = 366 * 24, .otherwise = 24});
   if (!hours) return problem(400, "Not understood", hours.error().message);
   return HistoryQuestion{*hours};
 }

@@ -172,6 +172,40 @@ class Http(unittest.TestCase):
         self.assertTrue(all(age_s >= 0 for age_s in recent["age_s"]))
         self.assertEqual({len(values) for values in recent.values()}, {len(recent["age_s"])})
 
+    def test_the_history_of_a_year_has_the_mean_of_each_day(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        day_s, now_s = 86400, int(time.time())
+        first_s = now_s // day_s * day_s - 400 * day_s
+        speeds = {}  # by the time of the reading; ten days without any
+        for number in range(399 * 24):
+            if not 2400 <= number < 2640:
+                speeds[first_s + 3600 * number] = 3 + number % 24 / 10 + number % 7
+        table = os.path.join(folder, "table.csv")
+        with open(table, "w", encoding="ascii") as rows:
+            rows.write("time,speed,direction\n" + "".join(
+                f"{time.strftime('%Y-%m-%dT%H:%M:%SZ', time.gmtime(at_s))},{speed:.1f},200\n" for at_s, speed in speeds.items()))
+        part = os.path.join(folder, time.strftime("wall-%Y%m%dT%H%M%SZ.windlog", time.gmtime(first_s)))
+        subprocess.run([YURAGI, "import", table, "-o", part, "--unit", "m/s", "--force"], check=True, capture_output=True, timeout=HANG_S)
+        with open(os.path.join(folder, "wall-20010101T000000Z.windlog"), "w", encoding="ascii") as damaged:
+            damaged.write("damaged")
+        self.start_daemon(f'[recording]\nfile = "{folder}/wall.windlog"\n[[sensor]]\nname = "roof"\ndriver = "synthetic"\n')
+        for path in ("history?hours=8785", "history?hours=-1", "history?hours=1e3", "history?hours=" + "9" * 100):
+            self.assertEqual(self.ask("/api/v1/" + path)[0], 400, path)
+        history = json.loads(self.wait_for("/api/v1/history?hours=8784", 200, '"sensors"'))
+        self.assertEqual((history["step_s"], history["begin_s"] % day_s, history["files_left_out"]), (day_s, 0, 1))
+        self.assertLessEqual(history["step_count"], 501)
+        mast = history["sensors"][0]
+        for step in range(history["step_count"]):
+            begin_s = history["begin_s"] + step * day_s
+            of_day = [round(speeds[at_s], 1) for at_s in range(begin_s, begin_s + day_s, 3600) if at_s in speeds]
+            if of_day:
+                self.assertAlmostEqual(mast["mean_m_s"][step], sum(of_day) / len(of_day), delta=0.0051)
+                self.assertEqual((mast["min_m_s"][step], mast["max_m_s"][step]), (min(of_day), max(of_day)))
+                self.assertEqual(mast["direction_deg"][step], 200)
+            else:
+                self.assertEqual((mast["mean_m_s"][step], mast["direction_deg"][step]), (None, None))
+        self.assertEqual(mast["mean_m_s"].count(None), 10 + 2)  # the gap; yesterday and today are the daemon's own
+
     def start_recording_daemon(self, **options):
         """A daemon with a completed recording beside the one that it writes; self.folder has both."""
         self.folder = self.enterContext(tempfile.TemporaryDirectory())

@@ -144,14 +144,14 @@ test("it needs nothing but the daemon, and says nothing on the console", { timeo
   }
 });
 
-test("24 hours: says what to do where nothing is recorded, and draws what is", { timeout: 2 * HANG_MS }, async () => {
+test("recorded wind: what to do where nothing is recorded; a day and a year of what is", { timeout: 2 * HANG_MS }, async () => {
   const page = await open(url);
   await page.waitForSelector("#history .empty:text('[recording] file')");
   assert.deepEqual(page.complaints, []);
   const row = (values) => Array.from({ length: 481 }, (_, step) => (step > 100 && step < 160 ? null : values(step)));
   const roof = { name: HOSTILE, min_m_s: row(() => 1), mean_m_s: row((step) => 3 + Math.sin(step / 30)), max_m_s: row(() => 6), direction_deg: row(() => 220) };
   const mast = { ...roof, name: "mast", mean_m_s: row(() => 2) };
-  const history = { begin_s: 1_780_000_000, step_s: 180, step_count: 481, sensors: [roof, mast] };
+  const history = { begin_s: 1_780_000_000, step_s: 180, step_count: 481, files_left_out: 0, sensors: [roof, mast] };
   let asked = 0;
   await page.route("**/api/v1/history?hours=24", (route) =>
     asked++ === 0 ? route.fulfill({ status: 503, json: { detail: "busy" } }) : route.fulfill({ json: history }));
@@ -162,10 +162,40 @@ test("24 hours: says what to do where nothing is recorded, and draws what is", {
   await page.reload();
   await page.waitForSelector("#history canvas");
   assert.ok(asked >= 2, "a daemon that is busy is asked again");
-  assert.deepEqual(await page.$$eval("#history .legend li", (all) => all.map((one) => one.textContent)), [HOSTILE, "mast"]);
+  const legend = () => page.$$eval("#history .legend li", (all) => all.map((one) => one.textContent));
+  assert.match((await legend())[0], /^<img .*> mean 3\.\d m\/s, largest 6\.0 m\/s \(.*\), mostly from the south-west, no readings in 12 % of the time$/);
+  assert.match((await legend())[1], /^mast mean 2\.0 m\/s, /);
   assert.match(await page.getAttribute("#history .history", "aria-label"), /24 hours: .*mast/);
   await assertAccessible(page, "24 hours");
   await screenshot(page, "24-hours-1920-light");
+
+  const days = (values) => Array.from({ length: 367 }, (_, day) => (day < 40 || (day > 150 && day < 165) || day === 200 || day === 202 ? null : values(day)));
+  const storm = (day) => 4 + 2 * Math.cos(day / 58) + 1.5 * Math.sin(day * day);
+  const tower = { name: "tower", min_m_s: days(() => 0.2), mean_m_s: days(storm), max_m_s: days((day) => 2.5 * storm(day) + (day === 300 ? 9 : 0)),
+    direction_deg: days((day) => (day % 3 === 0 ? 290 : 215 + (day % 11))) };
+  const year = { begin_s: 1_750_032_000, step_s: 86_400, step_count: 367, files_left_out: 1, sensors: [tower] };
+  let askedOfYear = 0;
+  await page.route("**/api/v1/history?hours=8784", (route) =>
+    askedOfYear++ === 0 ? route.fulfill({ status: 503, json: { detail: "busy" } }) : route.fulfill({ json: year }));
+  await page.click("#history [data-length=year]");
+  await page.waitForSelector("#history .empty:text('Still being read')");
+  await page.waitForSelector("#history .legend li:text('tower')");
+  assert.ok(askedOfYear >= 2, "a daemon that is busy is asked again");
+  assert.deepEqual(await page.$$eval("#history [aria-pressed=true]", (all) => all.map((one) => one.textContent)), ["12 months"]);
+  assert.match((await legend())[0], /^tower mean \d\.\d m\/s, largest \d+\.\d m\/s \(.*20\d\d\), mostly from the south-west, no readings in 15 % of the time$/);
+  assert.match(await page.getAttribute("#history .history", "aria-label"), /12 months: tower/);
+  await page.waitForSelector("#history .rose .petal");
+  await page.waitForSelector("#history .empty:text('Damaged files of the recording, which are left out: 1')");
+  for (const [colorScheme, width] of [["light", 1400], ["dark", 1400], ["light", 390], ["dark", 390], ["light", 320]]) {
+    await page.emulateMedia({ colorScheme });
+    await page.setViewportSize({ width, height: 900 });
+    await page.waitForFunction(() => document.querySelector("#history canvas").clientWidth <= document.querySelector("#history .history").clientWidth);
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, "wider than the screen");
+    await assertAccessible(page, `a year, ${width}, ${colorScheme}`);
+    await screenshot(page, `year-${width}-${colorScheme}`);
+  }
+  await page.click("#history [data-length=day]");
+  await page.waitForSelector("#history .legend li:text('mast')");
   await page.context().close();
 });
 

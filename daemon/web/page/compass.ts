@@ -18,6 +18,22 @@ class Needle {
   }
 }
 
+/** Rim, ticks and letters, of a radius of 98. */
+export function dial_parts(): SVGElement[] {
+  const ticks = Array.from({ length: 36 }, (_, index) =>
+    svg("path", { class: index % 9 === 0 ? "tick main" : "tick", d: "M0-92v-6", transform: `rotate(${index * 10})` }),
+  );
+  const letters = texts.compass.map((point, index) => {
+    const angle = (index * Math.PI) / 2;
+    const x = CARDINAL_RADIUS * Math.sin(angle);
+    const y = -CARDINAL_RADIUS * Math.cos(angle);
+    return svg("text", { x, y, class: "point" }, point);
+  });
+  return [svg("circle", { r: 98, class: "rim" }), ...ticks, ...letters];
+}
+
+export const DIAL = { viewBox: "-108 -108 216 216", "aria-hidden": "true" };
+
 export class Compass {
   readonly dial: SVGElement;
   private readonly measured: Needle;
@@ -26,17 +42,7 @@ export class Compass {
   constructor() {
     this.measured = new Needle(svg("path", { class: "needle measured", d: "M0-92l6-12h-12z" }));
     this.blended = new Needle(svg("path", { class: "needle blended", d: "M0 62l-17-32h11v-84h12v84h11z" }));
-    const ticks = Array.from({ length: 36 }, (_, index) =>
-      svg("path", { class: index % 9 === 0 ? "tick main" : "tick", d: "M0-92v-6", transform: `rotate(${index * 10})` }),
-    );
-    const letters = texts.compass.map((point, index) => {
-      const angle = (index * Math.PI) / 2;
-      const x = CARDINAL_RADIUS * Math.sin(angle);
-      const y = -CARDINAL_RADIUS * Math.cos(angle);
-      return svg("text", { x, y, class: "point" }, point);
-    });
-    this.dial = svg("svg", { viewBox: "-108 -108 216 216", class: "compass", "aria-hidden": "true" },
-      svg("circle", { r: 98, class: "rim" }), ...ticks, ...letters, this.blended.shape, this.measured.shape);
+    this.dial = svg("svg", { ...DIAL, class: "compass" }, ...dial_parts(), this.blended.shape, this.measured.shape);
   }
 
   show(measured_deg: number | null, blended_deg: number | null): void {

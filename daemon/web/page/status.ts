@@ -142,6 +142,7 @@ export interface History {
   begin_s: number;
   step_s: number;
   step_count: number;
+  files_left_out: number;
   sensors: {
     name: string;
     min_m_s: (number | null)[];

@@ -488,7 +488,9 @@ TEST_F(RecordingDaemonTest, TheHistoryOfSoManyHours) {
   };
   EXPECT_THAT(answer("/api/v1/history"), HasSubstr("24 h"));
   EXPECT_THAT(answer("/api/v1/history?hours=168", kElsewhere), HasSubstr("168 h"));
-  for (const char* const query : {"?hours=0", "?hours=169", "?hours=", "?hours=-1", "?hours=1x", "?days=1"})
+  EXPECT_THAT(answer("/api/v1/history?hours=8784"), HasSubstr("8784 h"));
+  for (const char* const query :
+       {"?hours=0", "?hours=8785", "?hours=99999999999999999999", "?hours=", "?hours=-1", "?hours=1x", "?days=1"})
     EXPECT_THAT(answer(std::string("/api/v1/history") + query), StartsWith("HTTP/1.1 400")) << query;
 }
 TEST_F(RecordingDaemonTest, WhyThereIsNoHistory) {
