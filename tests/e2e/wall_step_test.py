@@ -22,7 +22,7 @@ from yuragi_client import Client  # noqa: E402
 
 PROGRAMS = os.path.abspath(sys.argv.pop(1))
 YURAGI, VIEWER = (os.path.join(PROGRAMS, name) for name in ("yuragi", "yuragi-viewer"))
-DELAY_S = 0.12
+DELAY_S = 0.3  # with room for a machine that is busy
 SLOWEST_S = 0.08  # of the network
 TICK_S = 1 / 60
 CONFIG = f"""
@@ -103,11 +103,23 @@ class WallStep(unittest.TestCase):
                 kept.append(row)
         return kept
 
-    def wait_for_rows(self, viewers, count):
-        """Waits until each viewer has shown so many pictures in step."""
+    @staticmethod
+    def pairs(left, right):
+        """Each picture of the left with the last one of the right before it, and by how many ticks' time they are apart; without those
+        beside a pause of the other."""
+        pairs, at = [], 0
+        for row in left:
+            while at + 1 < len(right) and right[at + 1]["chosen_utc_ns"] <= row["chosen_utc_ns"]:
+                at += 1
+            if right and 0 <= (apart := (row["chosen_utc_ns"] - right[at]["chosen_utc_ns"]) * 1e-9 / TICK_S) < 1.5:
+                pairs.append((row, right[at], apart))
+        return pairs
+
+    def wait_for_pairs(self, viewers, count):
+        """Waits until the viewers have shown so many pictures in step at the same time."""
         enough = threading.Event()
         for _ in range(int(10 * HANG_S)):
-            if all(os.path.exists(swaps) and len(self.rows(swaps)) >= count for _, swaps in viewers):
+            if all(os.path.exists(swaps) for _, swaps in viewers) and len(self.pairs(*(self.rows(swaps) for _, swaps in viewers))) >= count:
                 return
             self.assertTrue(all(viewer.process.poll() is None for viewer, _ in viewers), [viewer.text() for viewer, _ in viewers])
             enough.wait(0.5)  # the files are read again
@@ -121,10 +133,10 @@ class WallStep(unittest.TestCase):
         ticks = Ticks(address)
         self.screen = self.enterContext(Screen())
         viewers = [self.view("left", address, 1), self.view("right", address, 2)]
-        self.wait_for_rows(viewers, pictures)
+        self.wait_for_pairs(viewers, pictures)
         for viewer, _ in viewers:
             self.assertEqual(viewer.end(), 0, viewer.text())
-            self.assertRegex(viewer.text(), r"delay 120 ms (not )?kept; \d+ of \d+ frames late; given up \d+ times; clock")
+            self.assertRegex(viewer.text(), r"delay 300 ms (not )?kept; \d+ of \d+ frames late; given up \d+ times; clock")
         left, right = (self.rows(swaps) for _, swaps in viewers)
 
         # The daemon may have skipped ticks: these are in no frame, and do not count.
@@ -142,19 +154,12 @@ class WallStep(unittest.TestCase):
             self.assertGreaterEqual(row["utc_ns"], row["chosen_utc_ns"])
 
         # At equal UTC the two differ by one tick at most.
-        at, compared = 0, 0
-        for row in left:
-            while at + 1 < len(right) and right[at + 1]["chosen_utc_ns"] <= row["chosen_utc_ns"]:
-                at += 1
-            apart = (row["chosen_utc_ns"] - right[at]["chosen_utc_ns"]) * 1e-9 / TICK_S
-            if not 0 <= apart < 1.5:
-                continue  # one of them had a pause
-            compared += 1
-            self.assertLessEqual(abs(place[row["tick"]] - place[right[at]["tick"]] - round(apart)), 1, (row, right[at]))
-        self.assertGreater(compared, pictures // 2)
+        pairs = self.pairs(left, right)
+        for one, other, apart in pairs:
+            self.assertLessEqual(abs(place[one["tick"]] - place[other["tick"]] - round(apart)), 1, (one, other))
         to_swap_ms = statistics.median(1e-6 * (row["utc_ns"] - row["chosen_utc_ns"]) for row in left + right)
         late = [rows[-1]["late_frames"] for rows in (left, right)]
-        print(f"{len(left)} and {len(right)} pictures, {compared} compared; late frames: {late}; {to_swap_ms:.1f} ms to the swap")
+        print(f"{len(left)} and {len(right)} pictures, {len(pairs)} compared; late frames: {late}; {to_swap_ms:.1f} ms to the swap")
 
     def test_both_screens_show_the_same_tick_behind_uneven_networks(self):
         self.compare(150)
