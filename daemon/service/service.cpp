@@ -1,6 +1,7 @@
 #include "daemon/service/service.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <optional>
 
@@ -53,6 +54,8 @@
 #include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
+#include "engine/output/output.hpp"
+#include "engine/platform/clock_watch.hpp"
 #include "engine/platform/secret_file.hpp"
 
 namespace yuragi::daemon::service {
@@ -165,6 +168,9 @@ class Service::Io {
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
+    if (std::ranges::any_of(config.outputs,
+                            [](const output::Table& table) { return table.output.delay_s.has_value(); }))
+      clock_watch_.emplace([] { return std::chrono::system_clock::now(); });
     if (options.record) {
       history_ = make_history(*options.record);
       long_history_ = make_history(*options.record);
@@ -687,6 +693,10 @@ class Service::Io {
       status.troubles.push_back(std::move(*trouble));
     if (!page_file_trouble_.empty())
       status.troubles.push_back("what the page has set up is left out: " + page_file_trouble_);
+    if (clock_watch_) {
+      if (std::string trouble = state::clock_trouble(clock_watch_->latest()); !trouble.empty())
+        status.troubles.push_back(std::move(trouble));
+    }
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
@@ -803,8 +813,9 @@ class Service::Io {
   std::unique_ptr<recording::Recorder> recorder_;
   /// Null: not recorded. The second reads what is_of_means(): so the first time, which is long, delays no other.
   std::unique_ptr<history::Reader> history_, long_history_;
-  std::unique_ptr<web::Server> web_;      ///< null: no [http] listen
-  std::optional<alerts::Alerts> alerts_;  ///< nullopt: no alerts
+  std::unique_ptr<web::Server> web_;                 ///< null: no [http] listen
+  std::optional<platform::ClockWatch> clock_watch_;  ///< if screens are in step by this machine's clock
+  std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
   Manager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame if it has scenes
 

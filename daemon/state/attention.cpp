@@ -55,4 +55,10 @@ std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
   return all;
 }
 
+std::string clock_trouble(const platform::ClockOffset& offset) {
+  if (!offset.is_large()) return {};
+  return "the screens of the wall are out of step by more than 5 ms: " + text_of(offset) +
+         "; `chronyc sources` shows what sets it";
+}
+
 }  // namespace yuragi::daemon::state

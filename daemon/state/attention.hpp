@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/platform/clock_offset.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::state {
@@ -20,5 +21,9 @@ inline constexpr double kLateIo_s = 0.1;
 /// used or lack what they should have, a recorder that cannot write, that has dropped readings or whose disk is nearly
 /// full, and steps that are skipped or late. Empty: all is well. Pure.
 std::vector<std::string> needs_attention(const wire::Sensors& sensors);
+
+/// For Sensors::troubles of a wall whose screens are in step by the machines' clocks: what is wrong with this one's.
+/// Empty if it is right, or unknown. Pure.
+std::string clock_trouble(const platform::ClockOffset& offset);
 
 }  // namespace yuragi::daemon::state

@@ -137,6 +137,7 @@ std::optional<ParameterError> mistake_of(const Screen& screen) {
 struct Keys {
   std::optional<Size> size;
   int refreshes = 1;
+  std::optional<double> delay_s;
   std::optional<RoomPlace> lower_left_m, lower_right_m, upper_left_m, eye_m;
 };
 
@@ -155,6 +156,16 @@ const Fields<Keys>& output_fields() {
         .help = "Refreshes of the display for each picture: 2 gives an even 30 pictures a second on a display of 60 "
                 "Hz, for a machine that is too slow for 60"},
        &Keys::refreshes},
+      {{.name = "delay",
+        .unit = "s",
+        .default_value = 0.0,
+        .min = kMinDelay_s,
+        .max = kMaxDelay_s,
+        .help = "For a wall of several machines: each moment is shown so long after its UTC, on every screen at the "
+                "same time. More than the network's longest delay and two frames; the clocks of all machines must be "
+                "set by one time server",
+        .left_out = "each viewer is as little behind as its network allows"},
+       &Keys::delay_s},
       {{.name = "screen_lower_left",
         .default_value = std::string(),
         .help =
@@ -280,7 +291,11 @@ Result<Output, ParameterError> output_of(std::string name, const ParameterValues
   if (!errors.empty()) return errors.front();
   auto screen = screen_of(keys);
   if (!screen) return screen.error();
-  return Output{.name = std::move(name), .size = keys.size, .refreshes = keys.refreshes, .screen = *screen};
+  return Output{.name = std::move(name),
+                .size = keys.size,
+                .refreshes = keys.refreshes,
+                .delay_s = keys.delay_s,
+                .screen = *screen};
 }
 
 Result<Window, ParameterError> window_of(const ParameterValues& values) {

@@ -16,6 +16,8 @@ namespace yuragi::output {
 inline constexpr std::size_t kMaxOutputs = 32;
 inline constexpr std::size_t kMaxWindows = 16;
 inline constexpr int kMaxSide_px = 16384;
+inline constexpr double kMinDelay_s = 0.02;
+inline constexpr double kMaxDelay_s = 1.0;
 
 /// A place in a picture or on a monitor, as parts of its width and height: x to the right, y down.
 struct Place {
@@ -80,6 +82,8 @@ struct Output {
   std::string name = "wall";
   std::optional<Size> size = std::nullopt;  ///< of the picture; nullopt: the resolution of its windows
   int refreshes = 1;                        ///< refreshes of the display per picture
+  /// From a moment's UTC to its picture; nullopt: as little as the network allows.
+  std::optional<double> delay_s = std::nullopt;
   std::optional<Screen> screen = std::nullopt;
   std::vector<Window> windows = {};  ///< at least one
   friend bool operator==(const Output&, const Output&) = default;

@@ -36,7 +36,7 @@ FORBIDDEN_IN_ENGINE = set(
 ALLOWED = {
     "engine/base": {"POSIX"},  # descriptors that children do not inherit
     "engine/fft": {"mutex"},  # FFTW's planner
-    "engine/platform": {"filesystem", "csignal", "random", "POSIX"},  # what programs need of the system
+    "engine/platform": {"filesystem", "csignal", "random", "thread", "mutex", "POSIX"},  # what programs need of the system
     "engine/workers": {"thread", "mutex", "condition_variable", "POSIX"},  # threads that share a tick
 }
 CLOCK_READ = re.compile(r"\b(?:steady|system|high_resolution|utc)_clock::now\b")

@@ -6,14 +6,12 @@ usage: viewer_age_test.py DIRECTORY-OF-THE-PROGRAMS
 import os
 import re
 import signal
-import socket
 import sys
 import tempfile
-import threading
-import time
 import unittest
 
 from programs import HANG_S, Program, free_port
+from slow_network import SlowNetwork
 
 PROGRAMS = os.path.abspath(sys.argv.pop(1))
 YURAGI, SIMULATOR, VIEWER = (os.path.join(PROGRAMS, name) for name in ("yuragi", "yuragi-sim", "yuragi-viewer"))
@@ -35,52 +33,6 @@ port = {port}
 """
 PROFILE = "renke-rs-fsjt-rs-fxjt-n01"
 AGE = r"reading (\d+) ms old when it was shown \(of 10 s: p50 (\d+), p95 (\d+), at most (\d+) ms"
-
-
-class SlowNetwork:
-    """Passes a TCP connection on, and what the server says later by delay_s."""
-
-    def __init__(self, to, delay_s):
-        self.to, self.delay_s = to, delay_s
-        self.listener = socket.create_server(("127.0.0.1", 0))
-        self.address = "127.0.0.1:%d" % self.listener.getsockname()[1]
-        threading.Thread(target=self.serve, daemon=True).start()
-
-    def serve(self):
-        near = self.listener.accept()[0]
-        host, port = self.to.rsplit(":", 1)
-        far = socket.create_connection((host, int(port)))
-        threading.Thread(target=self.carry, args=(near, far, 0.0), daemon=True).start()
-        self.carry(far, near, self.delay_s)
-
-    @staticmethod
-    def carry(source, sink, delay_s):
-        waiting, news = [], threading.Condition()
-
-        def write():
-            while True:
-                with news:
-                    news.wait_for(lambda: waiting)
-                    due_s, block = waiting.pop(0)
-                time.sleep(max(0.0, due_s - time.monotonic()))  # the delay that is tested
-                try:
-                    sink.sendall(block)
-                except OSError:
-                    return
-                if not block:
-                    return
-
-        threading.Thread(target=write, daemon=True).start()
-        while True:
-            try:
-                block = source.recv(65536)
-            except OSError:
-                block = b""
-            with news:
-                waiting.append((time.monotonic() + delay_s, block))
-                news.notify()
-            if not block:
-                return
 
 
 class ViewerAge(unittest.TestCase):
@@ -116,7 +68,7 @@ class ViewerAge(unittest.TestCase):
         p50, p95, most = self.age_by(address)
         self.assertTrue(0 < p50 <= p95 <= most < 60_000, (p50, p95, most))
         delay_ms = 500
-        network = SlowNetwork(address, 1e-3 * delay_ms)
+        network = SlowNetwork(address, lambda: 1e-3 * delay_ms)
         self.addCleanup(network.listener.close)
         slow = self.age_by(network.address)
         print(f"direct: {p50}, {p95}, {most} ms; 500 ms later: {slow} ms")

@@ -25,6 +25,7 @@ bool is_part(double value) {
 void demand_that_it_can_be_shown(const output::Output& wall) {
   demand(!wall.windows.empty() && wall.windows.size() <= output::kMaxWindows);
   demand(wall.refreshes >= 1);
+  if (wall.delay_s) demand(*wall.delay_s >= output::kMinDelay_s && *wall.delay_s <= output::kMaxDelay_s);
   if (wall.size) {
     demand(wall.size->width_px > 0 && wall.size->width_px <= output::kMaxSide_px);
     demand(wall.size->height_px > 0 && wall.size->height_px <= output::kMaxSide_px);

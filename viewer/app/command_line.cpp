@@ -51,7 +51,7 @@ void add_film_options(CLI::App& app, picture::ViewerOptions& options) {
           ->type_name("FILE.windlog")
           ->group(film);
   for (const char* other : {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel", "--show",
-                            "--dark-when-closed", "--output", "--test-card", "--age"}) {
+                            "--dark-when-closed", "--output", "--test-card", "--age", "--swaps"}) {
     render->excludes(other);
   }
   auto* const out =
@@ -121,8 +121,10 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
       ->needs(config)
       ->type_name("NAME");
   app.add_flag("--test-card", options.has_test_card, "Show a test picture to set up an [[output]]; needs no daemon");
-  app.add_flag("--age", options.logs_age,
-               "Log the age of the sensor's reading when its picture was shown, every 10 s and at the end");
+  app.add_flag(
+      "--age", options.logs_age,
+      "Log the age of the sensor's reading when its picture was shown, and how well the delay of [[output]] is "
+      "kept, every 10 s and at the end");
   app.add_flag("--list-monitors", options.lists_monitors, "List the monitors by number and name, and end");
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");
@@ -143,6 +145,10 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
       app.add_option("--screenshot", options.screenshot, "Write a picture to FILE.png or FILE.jpg, and end")
           ->check(check_picture_name)
           ->group(picture);
+  app.add_option("--swaps", options.swaps,
+                 "Write a line to FILE for each picture shown: its UTC in nanoseconds and the tick of its frame, to "
+                 "compare the screens of a wall")
+      ->excludes(screenshot);
   app.add_option("--frames", options.frames, "Take the picture after this many frames with a pose from the stream")
       ->needs(screenshot)
       ->capture_default_str()

@@ -6,14 +6,17 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/base/address.hpp"
+#include "engine/platform/clock_watch.hpp"
 #include "viewer/app/overlay.hpp"
 #include "viewer/app/own_token.hpp"
 #include "viewer/app/panel.hpp"
 #include "viewer/app/paused_moment.hpp"
+#include "viewer/app/swap_log.hpp"
 #include "viewer/app/watchdog.hpp"
 #include "viewer/app/window.hpp"
 #include "viewer/gl/dimmer.hpp"
@@ -47,6 +50,8 @@ constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // fade of the light while a person moves a handle of the panel
 constexpr double kAgeLogInterval_s = stream::PictureAge::kSpan_s;
+constexpr double kDoubtLogInterval_s = 60.0;
+constexpr double kClockLogInterval_s = 600.0;
 constexpr int kMeasuredEvery = 3;   // pictures of a graphics card: to wait for one costs a little
 constexpr double kDimming_s = 0.5;  // the brightness continues for this long between two of the daemon's statuses
 
@@ -54,9 +59,12 @@ double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-/// Since 1970, at a moment of now_s().
+/// Since 1970, at a moment of now_s(). The later of two readings: a thread that the system stops between the two clocks
+/// reads too early a time.
 double utc_at(double moment_s) {
-  return seconds(std::chrono::system_clock::now().time_since_epoch()) + moment_s - now_s();
+  const auto zero_s = [] { return seconds(std::chrono::system_clock::now().time_since_epoch()) - now_s(); };
+  const double first_s = zero_s();
+  return moment_s + std::max(first_s, zero_s());
 }
 
 stream::Options address_of(const picture::ViewerOptions& options) {
@@ -81,6 +89,7 @@ class Viewer::Show {
         is_stopping_(is_stopping),
         connection_(address_of(options)),
         output_(output_of(options)),
+        timeline_(output_ ? output_->delay_s : std::nullopt),
         began_s_(now_s()),
         last_s_(began_s_),
         brightness_(options.is_dark_when_closed || output_ ? 0.0 : 1.0),
@@ -114,6 +123,9 @@ class Viewer::Show {
     director_.emplace(options_, *renderer_, options_.connect);
     dimmer_.emplace();
     if (options.has_test_card) test_card_.emplace();
+    if (timeline_.fixed_delay() || options.logs_age)
+      clock_watch_.emplace([] { return std::chrono::system_clock::now(); });
+    if (!options.swaps.empty()) swap_log_.emplace(options.swaps);
     overlay_.emplace(window_ ? window_->handle() : nullptr);
     pass_clock_.emplace(is_software_ ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
     const auto is_shown = [&](const char* panel) {
@@ -148,6 +160,7 @@ class Viewer::Show {
       const bool is_usual = !is_black && !test_card_ && compiled == gl::compiled_shaders() && !is_in_transition();
       std::optional<double> work_s = is_usual && !is_software_ ? work_of_graphics_card_s() : std::nullopt;
       show(size);
+      if (!is_black) log_swap();
       note_age(display_interval_s());
       if (gl::is_context_lost())
         throw picture::ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
@@ -380,7 +393,10 @@ class Viewer::Show {
     const double passed_s = now - last_s_;
     last_s_ = now;
     picture_passed_s_ = passed_s;
-    moment_ = &paused_.advance(timeline_.advance(now), passed_s);
+    picture_utc_s_ = utc_at(now);
+    moment_ = &paused_.advance(timeline_.advance(now, picture_utc_s_), passed_s);
+    log_doubt();
+    log_clock();
     // A wall stays black, and a picture in a file is made only with a frame.
     if (window_ && !wall_) notice_ = notice_words_.advance(now, timeline_.playback(), connection_.status());
     follow_brightness(is_first_status ? kDimming_s : passed_s);
@@ -490,7 +506,42 @@ class Viewer::Show {
   void log_age() {
     age_logged_s_ = now_s();
     const auto age = age_.figures(age_logged_s_);
-    std::fprintf(stderr, "yuragi-viewer: %s\n", age ? age_text(*age).c_str() : "no reading has been shown");
+    std::string text = age ? age_text(*age) : "no reading has been shown";
+    if (const auto& fixed = timeline_.fixed_delay()) text += "; " + delay_text(fixed->figures());
+    if (clock_watch_) text += "; " + platform::text_of(clock_watch_->latest());
+    std::fprintf(stderr, "yuragi-viewer: %s\n", text.c_str());
+  }
+
+  /// Each time that the fixed delay is given up, but not more often than once a minute.
+  void log_doubt() {
+    const auto& fixed = timeline_.fixed_delay();
+    if (!fixed || fixed->figures().losses == logged_losses_ || last_s_ < doubt_logged_s_ + kDoubtLogInterval_s) return;
+    if (!fixed->is_in_doubt()) return;
+    logged_losses_ = fixed->figures().losses;
+    doubt_logged_s_ = last_s_;
+    std::fprintf(stderr, "yuragi-viewer: %s\n", fixed->doubt_text().c_str());
+  }
+
+  /// While this machine's clock puts a screen out of step, and not more often than every 10 minutes.
+  void log_clock() {
+    if (!timeline_.fixed_delay() || last_s_ < clock_logged_s_ + kClockLogInterval_s) return;
+    const platform::ClockOffset offset = clock_watch_->latest();
+    if (!offset.is_large()) return;
+    clock_logged_s_ = last_s_;
+    std::fprintf(stderr, "yuragi-viewer: this screen is out of step by more than 5 ms: %s\n",
+                 platform::text_of(offset).c_str());
+  }
+
+  /// Call when the picture was handed to the display.
+  void log_swap() {
+    if (!swap_log_) return;
+    const auto& fixed = timeline_.fixed_delay();
+    const auto nanoseconds = [](double utc_s) { return static_cast<std::int64_t>(1e9 * utc_s); };
+    swap_log_->add({.utc_ns = nanoseconds(utc_at(now_s())),
+                    .tick = moment_->tick,
+                    .chosen_utc_ns = nanoseconds(picture_utc_s_),
+                    .is_in_step = fixed && fixed->figures().is_kept && timeline_.playback() == stream::Playback::kLive,
+                    .late_frames = fixed ? fixed->figures().late_frames : 0});
   }
 
   double display_interval_s() const {
@@ -526,6 +577,12 @@ class Viewer::Show {
   int measured_pictures_ = 0;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
+  double picture_utc_s_ = 0.0;       // our clock: when the picture's moment was chosen
+  std::uint64_t logged_losses_ = 0;  // of the fixed delay
+  double doubt_logged_s_ = -kDoubtLogInterval_s;
+  double clock_logged_s_ = -kClockLogInterval_s;
+  std::optional<platform::ClockWatch> clock_watch_;  // if its offset is shown
+  std::optional<SwapLog> swap_log_;
   stream::PictureAge age_;
   double age_logged_s_ = now_s();
   const stream::PoseMoment* moment_ = nullptr;

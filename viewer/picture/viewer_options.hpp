@@ -24,6 +24,7 @@ struct ViewerOptions {
   bool has_test_card = false;   ///< instead of the picture
   bool lists_monitors = false;  ///< and no more
   bool logs_age = false;        ///< logs the age of the readings in the pictures
+  std::string swaps;            ///< a file that gets a line for each picture; empty: none
   bool is_turning = false;
   bool is_dark_when_closed = false;
   std::vector<std::string> look;  ///< "time=06:30": overrides the daemon's look

@@ -19,6 +19,7 @@ void PoseHistory::push(PoseMoment& moment) {
   }
   PoseMoment& place = moments_[(first_ + count_ - 1) % moments_.size()];
   place.time_s = moment.time_s;
+  place.tick = moment.tick;
   place.wind = moment.wind;
   place.view_wind_from_deg = moment.view_wind_from_deg;
   std::swap(place.poses, moment.poses);

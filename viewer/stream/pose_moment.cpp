@@ -45,6 +45,7 @@ void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& 
   for (std::size_t scene = 0; scene < out.opacities.size(); ++scene) {
     out.opacities[scene] = a.opacities[scene] + share * (b.opacities[scene] - a.opacities[scene]);
   }
+  out.tick = weight < 1.0 ? a.tick : b.tick;
   out.time_s = std::lerp(a.time_s, b.time_s, weight);
   out.wind.wind = a.wind.wind + weight * (b.wind.wind - a.wind.wind);
   if (a.view_wind_from_deg && b.view_wind_from_deg) {

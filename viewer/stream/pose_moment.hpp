@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +12,7 @@ namespace yuragi::viewer::stream {
 /// The content of one moment: the wind, and the pose of each scene.
 struct PoseMoment {
   double time_s = 0.0;                                      ///< on the sender's time line
+  std::uint64_t tick = 0;                                   ///< of the frame at this moment or before it
   wind::State wind;                                         ///< its `time` is not used
   std::optional<double> view_wind_from_deg = std::nullopt;  ///< for cameras with a wind_angle
   std::vector<pose::Pose> poses;

@@ -31,6 +31,7 @@ bool PoseTimeline::accept(wire::Frame& frame, double local_s) {
   }
 
   incoming_.time_s = frame.info.time_s;
+  incoming_.tick = frame.info.tick;
   incoming_.wind = frame.info.wind;
   incoming_.view_wind_from_deg = frame.info.view_wind_from_deg;
   std::swap(incoming_.poses, frame.poses);
@@ -48,14 +49,14 @@ void PoseTimeline::stand_in_for_hidden(wire::Frame& frame) const {
   }
 }
 
-const PoseMoment& PoseTimeline::advance(double local_s) {
+const PoseMoment& PoseTimeline::advance(double local_s, std::optional<double> target_s) {
   const double passed_s = std::max(0.0, local_s - last_local_s_);
   last_local_s_ += passed_s;
   if (current().is_empty()) return shown_;
 
-  current().advance(local_s, shown_);
+  current().advance(local_s, target_s, shown_);
   if (is_fading()) {
-    tracks_[1 - current_].advance(local_s, faded_);
+    tracks_[1 - current_].advance(local_s, std::nullopt, faded_);
     fade_ = std::min(1.0, fade_ + std::min(passed_s, kMaxFadeStep_s) / kFade_s);
     blend(faded_, shown_, fade_ * fade_ * (3.0 - 2.0 * fade_), shown_);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "viewer/stream/pose_track.hpp"
@@ -34,8 +35,9 @@ class PoseTimeline {
   /// scenes. A scene of opacity 0 can come without its pose: the last one shown is used.
   bool accept(wire::Frame& frame, double local_s);
 
-  /// Advances to local_s. Returns the moment to show, valid until the next call.
-  const PoseMoment& advance(double local_s);
+  /// Advances to local_s, toward the moment target_s of the sender's time line; nullopt: toward that of the arrivals.
+  /// Returns the moment to show, valid until the next call.
+  const PoseMoment& advance(double local_s, std::optional<double> target_s = std::nullopt);
 
   /// Can a frame of the moment sender_s, arriving at local_s, be the next of the run that is shown?
   bool continues(double sender_s, double local_s) const {

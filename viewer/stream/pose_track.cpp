@@ -35,6 +35,7 @@ void PoseTrack::reset(const PoseMoment& layout) {
 void PoseTrack::clear() {
   history_.clear();
   clock_ = {};
+  has_advanced_ = false;
   is_replaying_ = false;
   replay_elapsed_s_ = 0.0;
 }
@@ -55,25 +56,29 @@ void PoseTrack::push(PoseMoment& moment, double local_s) {
   }
 }
 
-double PoseTrack::follow_s(double passed_s, double local_s) {
+double PoseTrack::follow_s(double passed_s, double target_s) const {
   // Follows the target by playing a little faster or slower, and brakes so as to be at rest at the newest.
   const double left_s = std::max(0.0, history_.newest().time_s - shown_s_);
-  const double behind_s = clock_.target_s(local_s) - (shown_s_ + passed_s);
+  const double behind_s = target_s - (shown_s_ + passed_s);
   const double wanted = std::clamp(1.0 + kFollowGain_1_s * behind_s, kMinPlayRate, kMaxPlayRate);
   const double braked = std::sqrt(2.0 * left_s / clock_.interval_s());
   return std::min(shown_s_ + std::min(wanted, braked) * passed_s, shown_s_ + left_s);
 }
 
-void PoseTrack::advance(double local_s, PoseMoment& out) {
+void PoseTrack::advance(double local_s, std::optional<double> target_s, PoseMoment& out) {
   const double passed_s = std::max(0.0, local_s - last_local_s_);
   last_local_s_ += passed_s;
 
   // Follow the stream; once it is silent and the picture rests at the newest moment, play backward.
   const double newest_s = history_.newest().time_s;
+  const double by_arrivals_s = clock_.target_s(local_s);
+  if (target_s && !(std::abs(*target_s - by_arrivals_s) < kMaxTarget_s)) target_s.reset();
+  if (!has_advanced_ && target_s) shown_s_ = std::min(*target_s - passed_s, newest_s);
+  has_advanced_ = true;
   if (is_replaying_) {
     replay_elapsed_s_ += passed_s;
   } else {
-    shown_s_ = follow_s(passed_s, local_s);
+    shown_s_ = follow_s(passed_s, target_s.value_or(by_arrivals_s));
     const double silence_s = local_s - clock_.last_arrival_s();
     is_replaying_ = silence_s > std::max(kMinSilence_s, 4.0 * clock_.interval_s()) && newest_s - shown_s_ < kAtRest_s;
   }

@@ -12,6 +12,10 @@ bool have_same_skeletons(const std::vector<wire::SceneModel>& a, const std::vect
 
 }  // namespace
 
+SceneTimeline::SceneTimeline(std::optional<double> fixed_delay_s) {
+  if (fixed_delay_s) fixed_delay_.emplace(*fixed_delay_s);
+}
+
 void SceneTimeline::set_scenes(wire::Scenes scenes) {
   const bool is_same = has_scenes_ && have_same_skeletons(scenes.scenes, scenes_);
   if (is_same || scenes.scenes.empty() || present_.playback() == Playback::kNothing) {
@@ -27,6 +31,7 @@ void SceneTimeline::set_scenes(wire::Scenes scenes) {
 }
 
 bool SceneTimeline::accept(wire::Frame& frame, double local_s) {
+  if (fixed_delay_) fixed_delay_->take_frame(frame.info, local_s);
   if (!next_) return present_.accept(frame, local_s);
   const double sender_s = frame.info.time_s;
   if (!next_begins_s_ && present_.continues(sender_s, local_s)) next_->take_clock_of(present_);
@@ -35,9 +40,10 @@ bool SceneTimeline::accept(wire::Frame& frame, double local_s) {
   return true;
 }
 
-const PoseMoment& SceneTimeline::advance(double local_s) {
+const PoseMoment& SceneTimeline::advance(double local_s, double utc_s) {
+  const std::optional<double> target_s = fixed_delay_ ? fixed_delay_->target_s(local_s, utc_s) : std::nullopt;
   if (next_begins_s_ && next_) {
-    next_->advance(local_s);
+    next_->advance(local_s, target_s);
     if (next_->shown_s() >= *next_begins_s_) {
       present_ = std::move(*next_);
       next_.reset();
@@ -45,7 +51,7 @@ const PoseMoment& SceneTimeline::advance(double local_s) {
       is_news_ = true;
     }
   }
-  return present_.advance(local_s);
+  return present_.advance(local_s, target_s);
 }
 
 std::optional<std::vector<wire::SceneModel>> SceneTimeline::take_new_scenes() {

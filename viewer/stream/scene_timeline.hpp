@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "viewer/stream/fixed_delay.hpp"
 #include "viewer/stream/pose_timeline.hpp"
 
 namespace yuragi::viewer::stream {
@@ -17,6 +18,9 @@ namespace yuragi::viewer::stream {
 /// Pure: time is a parameter, as in PoseTimeline. Thread-safe: no.
 class SceneTimeline {
  public:
+  /// `fixed_delay_s`: pictures are this much behind UTC, as FixedDelay has it; nullopt: as little as arrivals allow.
+  explicit SceneTimeline(std::optional<double> fixed_delay_s = std::nullopt);
+
   /// The scenes of the frames that follow.
   void set_scenes(wire::Scenes scenes);
 
@@ -24,15 +28,20 @@ class SceneTimeline {
   /// scenes.
   bool accept(wire::Frame& frame, double local_s);
 
-  /// Advances to local_s. Returns the moment to show, valid until the next call.
-  const PoseMoment& advance(double local_s);
+  /// Advances to local_s, which is utc_s since 1970; without a fixed delay utc_s is not used. Returns the moment to
+  /// show, valid until the next call.
+  const PoseMoment& advance(double local_s, double utc_s = 0.0);
 
   /// Returns the scenes of the last advance() if they have changed since the last call.
   std::optional<std::vector<wire::SceneModel>> take_new_scenes();
 
   Playback playback() const { return present_.playback(); }
 
+  /// Nullopt without one.
+  const std::optional<FixedDelay>& fixed_delay() const { return fixed_delay_; }
+
  private:
+  std::optional<FixedDelay> fixed_delay_;
   PoseTimeline present_;
   std::vector<wire::SceneModel> scenes_;  // of present_
   bool has_scenes_ = false;

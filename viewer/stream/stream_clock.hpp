@@ -18,7 +18,10 @@ class Clock {
   void observe(double sender_s, double local_s);
 
   /// The moment to show at local_s. Not before the first observe().
-  double target_s(double local_s) const { return local_s - offset_s_ - delay_s(); }
+  double target_s(double local_s) const { return quickest_s(local_s) - delay_s(); }
+
+  /// The moment of a frame that would arrive at local_s with the shortest delay. Not before the first observe().
+  double quickest_s(double local_s) const { return local_s - offset_s_; }
 
   /// The time between two frames, on the sender's time line.
   double interval_s() const { return interval_s_; }

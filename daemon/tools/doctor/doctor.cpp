@@ -69,7 +69,7 @@ std::vector<Finding> examine(const Examination& examination, const std::function
   add_other_devices(all, plugged);
   begin("permissions, clock, disk and address");
   append(all, judge(probe_groups(needed_groups(config))));
-  all.push_back(judge(probe_clock()));
+  all.push_back(judge(probe_clock(config)));
   if (config.recording.file) all.push_back(judge(probe_disk(config.recording, readings_per_s(config, running))));
 
   const std::string daemon = examination.daemon ? examination.daemon->software : std::string();

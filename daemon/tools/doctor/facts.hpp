@@ -7,6 +7,7 @@
 
 #include "drivers/sensor/endpoint.hpp"
 #include "engine/base/time.hpp"
+#include "engine/platform/clock_offset.hpp"
 
 namespace yuragi::daemon::tools::doctor {
 
@@ -41,6 +42,8 @@ struct GroupFacts {
 struct ClockFacts {
   UtcTime now{};
   std::optional<bool> is_synchronised{};  ///< by the kernel; nullopt: not known
+  platform::ClockOffset offset{};
+  bool is_of_wall = false;  ///< an [[output]] has a delay: several machines must have the same time
 };
 
 /// The folder of a recording.

@@ -122,7 +122,15 @@ Finding judge(const ClockFacts& clock) {
     return warning("clock", time + ", but no time server sets it: it will drift",
                    "sudo apt install systemd-timesyncd; sudo timedatectl set-ntp true");
   }
-  return ok("clock", clock.is_synchronised ? time + ", set by a time server" : time);
+  if (clock.is_of_wall && (clock.offset.is_large() || !clock.offset.offset_s)) {
+    return warning("clock",
+                   fmt::format("{}; {}; the screens of a wall with [[output]] delay are in step up to 5 ms", time,
+                               text_of(clock.offset)),
+                   "sudo apt install chrony on every machine of the wall, with one of them, or one server, as the "
+                   "server of all; chronyc tracking");
+  }
+  const std::string offset = clock.offset.offset_s ? "; " + text_of(clock.offset) : std::string();
+  return ok("clock", time + (clock.is_synchronised ? ", set by a time server" : "") + offset);
 }
 
 Finding judge(const DiskFacts& disk) {

@@ -83,13 +83,17 @@ GroupFacts probe_groups(std::vector<std::string> needed_groups) {
   return facts;
 }
 
-ClockFacts probe_clock() {
+ClockFacts probe_clock(const settings::Config& config) {
   ClockFacts facts{.now = std::chrono::system_clock::now()};
+  facts.offset = platform::read_clock_offset(facts.now);
+  facts.is_of_wall =
+      std::ranges::any_of(config.outputs, [](const output::Table& table) { return table.output.delay_s.has_value(); });
   timex state{};
   if (adjtimex(&state) >= 0) facts.is_synchronised = (state.status & STA_UNSYNC) == 0;
   // Written by systemd-timesyncd, which also counts if the kernel does not report it (in a container).
   std::error_code ignored;
   if (fs::exists("/run/systemd/timesync/synchronized", ignored)) facts.is_synchronised = true;
+  if (facts.offset.offset_s) facts.is_synchronised = true;
   return facts;
 }
 

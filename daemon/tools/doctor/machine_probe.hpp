@@ -15,7 +15,7 @@ namespace yuragi::daemon::tools::doctor {
 inline constexpr double kBytesPerReading = 48.0;
 
 GroupFacts probe_groups(std::vector<std::string> needed_groups);
-ClockFacts probe_clock();
+ClockFacts probe_clock(const settings::Config& config);
 /// `readings_per_s`: of all sensors that are recorded.
 DiskFacts probe_disk(const settings::RecordingConfig& recording, double readings_per_s);
 /// `daemon`: who answers there.

@@ -126,5 +126,12 @@ TEST(Attention, NamesEachThingByItself) {
   EXPECT_EQ(needs_attention(sensors).size(), 4U);
 }
 
+TEST(Attention, IsNeededByAClockThatPutsScreensOutOfStep) {
+  EXPECT_EQ(clock_trouble({.offset_s = 0.0049, .source = "chrony"}), "");
+  EXPECT_EQ(clock_trouble({.offset_s = std::nullopt, .source = "no time service replies"}), "");
+  EXPECT_THAT(clock_trouble({.offset_s = -0.0051, .source = "chrony"}),
+              AllOf(HasSubstr("5.10 ms behind UTC (chrony)"), HasSubstr("chronyc sources")));
+}
+
 }  // namespace
 }  // namespace yuragi::daemon::state

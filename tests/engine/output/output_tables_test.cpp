@@ -36,6 +36,7 @@ TEST(Outputs, HoldEveryKey) {
 name = "foyer"
 size = "3520x1080"
 refreshes = 2
+delay = 0.12
 screen_lower_left = "-1 0.5 0"
 screen_lower_right = "1, 0.5, 0"
 screen_upper_left = "-1 1.5 0"
@@ -57,6 +58,7 @@ blend_left = 0.1
   const Output expected{.name = "foyer",
                         .size = Size{3520, 1080},
                         .refreshes = 2,
+                        .delay_s = 0.12,
                         .screen = Screen{.lower_left_m = {-1, 0.5, 0},
                                          .lower_right_m = {1, 0.5, 0},
                                          .upper_left_m = {-1, 1.5, 0},

@@ -86,6 +86,17 @@ TEST(JudgeClock, HasToBeSetAndShouldBeKept) {
   }
 }
 
+TEST(JudgeClock, HasToBeRightWhereScreensAreInStep) {
+  ClockFacts clock{.now = in_year(2026), .is_synchronised = true, .offset = {.offset_s = -0.02, .source = "chrony"}};
+  EXPECT_THAT(judge(clock), is(Verdict::kOk, "set by a time server; clock 20 ms behind UTC (chrony)", ""));
+  clock.is_of_wall = true;
+  EXPECT_THAT(judge(clock), is(Verdict::kWarning, "clock 20 ms behind UTC (chrony)", "apt install chrony"));
+  clock.offset.offset_s = 0.0003;
+  EXPECT_THAT(judge(clock), is(Verdict::kOk, "clock 0.30 ms ahead of UTC (chrony)", ""));
+  clock.offset = {.offset_s = std::nullopt, .source = "no time service replies"};
+  EXPECT_THAT(judge(clock), is(Verdict::kWarning, "offset unknown (no time service replies)", "chronyc tracking"));
+}
+
 DiskFacts roomy() {
   return {.folder = "/var/lib/yuragi",
           .is_there = true,

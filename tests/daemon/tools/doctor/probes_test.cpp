@@ -186,7 +186,7 @@ TEST(MachineProbe, SeesTheDiskOfAFolder) {
 }
 
 TEST(MachineProbe, SeesClockUserVersionsAndLimits) {
-  EXPECT_LT(std::chrono::abs(probe_clock().now - std::chrono::system_clock::now()), 60s);
+  EXPECT_LT(std::chrono::abs(probe_clock(settings::default_config()).now - std::chrono::system_clock::now()), 60s);
   EXPECT_FALSE(probe_groups({}).user.empty());
   const VersionFacts versions = probe_versions("", std::nullopt);
   EXPECT_THAT(versions.program, testing::StartsWith("yuragi "));
