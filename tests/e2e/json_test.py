@@ -73,6 +73,7 @@ TABLES = {
     "sensors describe": ([], [r"^(\w+) +(.*)$"]),
     "sensors try": (["ALONE", "--duration", "2"], [r"^(made-up) +(\w+) "]),
     "sensors watch": (["--connect", "ADDRESS", "--once"], [r"^(made-up|garden|played) +(\S+) "]),
+    "calibrate list": (["--config", "CONFIG"], [r"^(made-up|garden): (zero), (span), (north)$"]),
     "check-config": (["CONFIG"], [r"^  sensor (\S+) \((\S+)\), (\S+),", r"^  scene (\S+) \((\S+)\)"]),
     "describe": ([], [r"^(\[.*?\])  # (.*)$", r"^  (\w+) {2,}(\S.*)$"]),
     "verify": (["WIND"], [r"^(\S+): sound; (\d+) readings"]),

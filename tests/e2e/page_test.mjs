@@ -1,19 +1,18 @@
 // The daemon's page in a real browser. Each test waits for what the page shows; HANG_MS is reached only by what hangs.
 // usage: page_test.py
 import assert from "node:assert/strict";
-import { spawn, execFileSync } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import http from "node:http";
 import { createRequire } from "node:module";
-import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 
-const HANG_MS = 60_000;
+import { begin, HANG_MS } from "./chromium.mjs";
+
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
 const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort, calibrationPort, keepPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
-const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 
 const HOSTILE = `<img src=x onerror="document.title='owned'">`;
@@ -35,61 +34,22 @@ scene = "meadow"
 name = "pond"
 scene = "lawn"
 `;
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-page-"));
-const running = new Set();
-let browser;
+let world;
 
-/** Runs one of our programs until it says so. */
-function start(program, args, says) {
-  const child = spawn(path.join(programs, program), args, { stdio: ["ignore", "pipe", "pipe"] });
-  running.add(child);
-  child.ended = new Promise((resolve) => child.on("exit", resolve));
-  let said = "";
-  return new Promise((resolve, reject) => {
-    const hear = (text) => {
-      said += text;
-      child.answer = says.exec(said);
-      if (child.answer) resolve(child);
-    };
-    child.stdout.on("data", hear);
-    child.stderr.on("data", hear);
-    child.on("exit", () => reject(new Error(`${program} ended: ${said}`)));
-  });
-}
-async function kill(child) {
-  child.kill("SIGKILL");
-  await child.ended;
-  running.delete(child);
-}
-function configured(name, text) {
-  const file = path.join(folder, name);
-  fs.writeFileSync(file, text + SCENES);
-  return file;
-}
+const start = (...args) => world.start(...args);
+const kill = (child) => world.kill(child);
+const open = (url, options = {}) => world.open(url, { viewport: { width: 1920, height: 1080 }, ...options });
+const configured = (name, text) => world.file(name, text + SCENES);
 const startDaemon = (file) => start("yuragi", ["run", "--config", file, "--listen", "127.0.0.1:0"], /answering at/);
 const startSensor = () => start("yuragi-sim", ["nmea", "--tcp", `127.0.0.1:${sensorPort}`, "--rate", "5"], /listening|127\.0\.0\.1/);
 
-/** A page, and all that it says on its console or asks of others. */
-async function open(url, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1920, height: 1080 }, ...options });
-  const page = await context.newPage();
-  page.setDefaultTimeout(HANG_MS);
-  page.complaints = [];
-  page.on("console", (message) => page.complaints.push(message.text()));
-  page.on("pageerror", (error) => page.complaints.push(error.message));
-  page.on("request", (request) => {
-    if (!request.url().startsWith(url)) page.complaints.push("asks for " + request.url());
-  });
-  await page.goto(url);
-  return page;
-}
 const sentence = (page) => page.textContent("#sentence");
 const waitForSentence = (page, pattern) =>
   page.waitForFunction((source) => new RegExp(source).test(document.getElementById("sentence").textContent), pattern.source);
 async function assertAccessible(page, what) {
   const faults = await page.evaluate(async (source) => {
     if (!window.axe) Object.assign(window, { axe: new Function(source + "; return axe;")() });
-    const { violations } = await window.axe.run();
+    const { violations } = await window.axe.run({ resultTypes: ["violations"] });
     return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
   }, axe);
   assert.deepEqual(faults, [], what);
@@ -105,10 +65,7 @@ let config, daemon, sensor, url;
 
 before(async () => {
   fs.mkdirSync(screenshots, { recursive: true });
-  browser = await chromium.launch({
-    executablePath: chromiumPath,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
-  });
+  world = await begin({ chromiumPath, programs, tools });
   config = configured("live.toml", `
 [http]
 listen = "127.0.0.1:${httpPort}"
@@ -123,11 +80,7 @@ port = ${sensorPort}
   sensor = await startSensor();
   daemon = await startDaemon(config);
 });
-after(async () => {
-  await browser?.close();
-  for (const child of running) await kill(child);
-  fs.rmSync(folder, { recursive: true });
-});
+after(() => world?.end());
 
 test("it needs nothing but the daemon, and says nothing on the console", { timeout: 2 * HANG_MS }, async () => {
   for (const [colorScheme, width] of [["light", 320], ["dark", 1920]]) {
@@ -204,7 +157,7 @@ test("24 hours of a daemon that records, and its log", { timeout: 2 * HANG_MS },
 [http]
 listen = "127.0.0.1:${recordingPort}"
 [recording]
-file = "${path.join(folder, "wall.windlog")}"
+file = "${path.join(world.folder, "wall.windlog")}"
 [[sensor]]
 name = "wall"
 driver = "synthetic"
@@ -239,14 +192,14 @@ async function downloaded(page, button) {
 }
 /** Imports a recording of so many seconds at 1 Hz. */
 function importRecording(file, seconds) {
-  const table = path.join(folder, "wind.csv");
+  const table = path.join(world.folder, "wind.csv");
   const rows = Array.from({ length: seconds }, (_, i) => `2026-01-01T00:${String(Math.floor(i / 60)).padStart(2, "0")}:${String(i % 60).padStart(2, "0")}Z,3.${i % 10},200`);
   fs.writeFileSync(table, ["time,speed,direction", ...rows, ""].join("\n"));
   execFileSync(path.join(programs, "yuragi"), ["import", table, "-o", file]);
 }
 
 test("recordings are downloaded, verified and reported, and a support bundle is made", { timeout: 4 * HANG_MS }, async () => {
-  const archive = path.join(folder, "archive");
+  const archive = path.join(world.folder, "archive");
   fs.mkdirSync(archive);
   const completed = "wall-20260101T000000Z.windlog";
   importRecording(path.join(archive, completed), 600);
@@ -355,6 +308,8 @@ const LANGUAGES = [
   { locale: "fr-FR", live: /^En direct\u00a0: roof, (\d+,\d m\/s (du|de l’)\s?[a-z-]+|calme), il y a \d+(,\d)? s$/, same: ["Code"] },
   { locale: "ja-JP", live: /^実測中：roof、([東西南北]+の風 \d+\.\d m\/s|無風)、\d+(\.\d)? 秒前$/, same: [] },
 ];
+/** One of them, whose page axe looks at besides the English one: all have the same parts. */
+const AXE_LOCALE = "ja-JP";
 /** Texts of ours that do not change while the page is open. */
 const ownTexts = (page) => page.evaluate(() => [
   ...[...document.querySelectorAll("[data-text]:not(#sentence), dt, legend, #look button, #look .empty, #look > .line label, #support h3, #support button, #support .empty, #support label, #hand label, #hand option, #hand button, #scenes .fade label, #fade option, .every")].map((one) => one.textContent),
@@ -494,11 +449,11 @@ test("in each language that the browser asks for, on a phone", { timeout: 4 * HA
     await page.waitForSelector("#log-lines li");
     await openLook(page);
     assert.equal(await isWider(page, 390), false, locale);
-    await assertAccessible(page, locale);
+    if (locale === AXE_LOCALE) await assertAccessible(page, locale);
     await screenshot(page, `language-${locale}-390`);
     await page.evaluate(() => document.getElementById("pairing").showModal());
     assert.equal(await isWider(page, 390), false, locale);
-    await assertAccessible(page, "pairing, " + locale);
+    if (locale === AXE_LOCALE) await assertAccessible(page, "pairing, " + locale);
     await page.screenshot({ path: path.join(screenshots, `language-${locale}-390-pairing.png`) });
     assert.deepEqual(page.complaints, []);
     await page.context().close();
@@ -564,7 +519,7 @@ test("a daemon that is killed is told at once, nothing old is shown, and it is b
 });
 
 test("a recording that plays is paused and resumed", { timeout: 2 * HANG_MS }, async () => {
-  const recording = path.join(folder, "summer.windlog");
+  const recording = path.join(world.folder, "summer.windlog");
   importRecording(recording, 300);
   await startDaemon(configured("player.toml", `
 [http]
@@ -589,7 +544,7 @@ loop = true
 });
 
 test("by WebSocket: each message is shown, and silence is no connection", { timeout: 2 * HANG_MS }, async () => {
-  const context = await browser.newContext();
+  const context = await world.browser.newContext();
   const page = await context.newPage();
   page.setDefaultTimeout(HANG_MS);
   const status = await (await fetch(url + "api/v1/status")).json();
@@ -618,7 +573,7 @@ async function openFromElsewhere(port, settings) {
   const file = configured(`paired-${port}.toml`, `
 [http]
 listen = "127.0.0.1:${port}"
-token_file = "${path.join(folder, `token-${port}`)}"
+token_file = "${path.join(world.folder, `token-${port}`)}"
 ${settings}
 [[sensor]]
 name = ${JSON.stringify(HOSTILE)}
@@ -635,7 +590,7 @@ test("a sensor is set up on the page, from nothing to live, removed, and back by
   const file = configured("setup.toml", `
 [http]
 listen = "127.0.0.1:${setupPort}"
-token_file = "${path.join(folder, "token-setup")}"
+token_file = "${path.join(world.folder, "token-setup")}"
 `);
   const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
   token("--new");
@@ -691,7 +646,7 @@ test("a sensor is calibrated on the page: stopped, measured, kept, and undone", 
   const file = configured("calibration.toml", `
 [http]
 listen = "127.0.0.1:${calibrationPort}"
-token_file = "${path.join(folder, "token-calibration")}"
+token_file = "${path.join(world.folder, "token-calibration")}"
 [[sensor]]
 name = "roof"
 driver = "nmea"
@@ -832,7 +787,7 @@ async function foreignPage() {
 }
 /** What a page of that origin gets of the daemon: its state by HTTP, and the first message of a WebSocket. */
 async function readFrom(origin, daemonUrl) {
-  const page = await browser.newPage();
+  const page = await world.browser.newPage();
   await page.goto(origin);
   const got = await page.evaluate(async (url) => {
     const state = await fetch(url + "/api/v1/status").then((answer) => answer.ok, () => false);
@@ -856,7 +811,7 @@ async function readFrom(origin, daemonUrl) {
 test("own pages draw the wind at /site/; a foreign page reads only if it is listed, and changes nothing", { timeout: 2 * HANG_MS }, async () => {
   const listed = await foreignPage();
   const other = await foreignPage();
-  const www = path.join(folder, "www");
+  const www = path.join(world.folder, "www");
   fs.cpSync(path.join(import.meta.dirname ?? path.dirname(process.argv[1]), "../../config/examples/www"), www, { recursive: true });
   fs.copyFileSync(require.resolve("p5/lib/p5.min.js"), path.join(www, "p5.min.js"));
   const file = configured("site.toml", `

@@ -65,12 +65,10 @@ TEST(PageFile, AMistakeIsToldWithItsFileAndLine) {
   EXPECT_THAT(refusal_of("[[sensor]"), StartsWith("page.toml:1:"));
 }
 
-TEST(PageFile, NothingButSensorsIsRead) {
+TEST(PageFile, NothingBesideSensorsCalibrationsAndValuesIsRead) {
   for (const char* const hostile :
        {"seed = 2\n", "[http]\nlisten = \"0.0.0.0:80\"\n", "[[alert]]\nname = \"a\"\ncommand = \"true\"\n",
-        "[recording]\nfile = \"/tmp/a.windlog\"\n", "[look]\nground_image = \"/etc/passwd\"\n",
-        "[[scene]]\nname = \"a\"\nkind = \"grass\"\n", "[[output]]\n", "sensor = 1\n",
-        "[sensor]\ndriver = \"nmea\"\n"}) {
+        "[recording]\nfile = \"/tmp/a.windlog\"\n", "[[output]]\n", "sensor = 1\n", "[sensor]\ndriver = \"nmea\"\n"}) {
     EXPECT_NE(refusal_of(hostile), "") << hostile;
   }
 }

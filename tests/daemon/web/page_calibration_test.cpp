@@ -110,7 +110,7 @@ class CalibrationJobTest : public PageCalibrationTest {
     Archive archive({.configuration = config_,
                      .stream = "127.0.0.1:7410",
                      .page = page_,
-                     .restart = [] {},
+                     .taking_over = {.restart = [] {}, .reload = [] {}},
                      .program = {"/bin/sh", "-c", "printf '%s\\n' \"$@\" >&2; exit 1", "sh"}});
     const auto ask = [&archive](ArchiveRequest request) {
       std::promise<http::Response> answered;

@@ -1,5 +1,6 @@
 #include "daemon/tools/calibration/calibration_source.hpp"
 
+#include <atomic>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -83,22 +84,20 @@ TEST(CalibrationSource, ASensorThatStaysSilentIsToldWithItsReason) {
   EXPECT_THAT(collected.error().message, HasSubstr("the sensor \"mast\" has sent nothing for 90 s (no such port)"));
 }
 
-/// It sends one reading, and is gone.
+std::atomic<bool> dying_sensor_is_gone = false;
+
+/// It sends readings until it is gone.
 class DyingSensor final : public drivers::sensor::Sensor {
  public:
   MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::Sink& sink) override {
-    if (!is_gone_) {
+    if (dying_sensor_is_gone) {
+      sink.link(wind::LinkState::kConnecting, "its plug is out");
+    } else {
       sink.link(wind::LinkState::kConnected, "");
       sink.reading({.time = clock.now(), .speed_m_s = 3.0, .direction_deg = {}, .gust_m_s = {}});
-    } else {
-      sink.link(wind::LinkState::kConnecting, "its plug is out");
     }
-    is_gone_ = true;
     return clock.now().mono + std::chrono::milliseconds(1);
   }
-
- private:
-  bool is_gone_ = false;
 };
 
 const drivers::sensor::DriverDescription kDyingDriver{
@@ -113,8 +112,10 @@ TEST(CalibrationSource, ASensorThatIsLostMeanwhileEndsIt) {
   ManualClock clock;
   const settings::SensorConfig roof = settings::default_sensor("roof", kDyingDriver, {});
   const auto source = make_live_source({&roof}, kNoDaemon, clock).value();
-  const auto collected = source->collect(
-      {.duration_s = 1e6}, [&](double, const CollectedReadings&) { clock.advance(std::chrono::milliseconds(300)); });
+  const auto collected = source->collect({.duration_s = 1e6}, [&](double, const CollectedReadings& so_far) {
+    if (!so_far[0].readings.empty()) dying_sensor_is_gone = true;
+    clock.advance(std::chrono::milliseconds(300));
+  });
   ASSERT_FALSE(collected);
   EXPECT_EQ(collected.error().kind, FailureKind::kUnavailable);
   EXPECT_THAT(collected.error().message, HasSubstr("the sensor \"roof\" was lost meanwhile (its plug is out)"));
