@@ -27,7 +27,7 @@ const value_text = (value: number | string) => (typeof value === "number" ? Stri
 
 function table(heads: string[], rows: string[][]): HTMLElement {
   return element("table", { class: "values" },
-    element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))),
+    element("thead", {}, element("tr", {}, ...heads.map((head) => (head === "" ? element("td", {}) : element("th", { scope: "col" }, head))))),
     element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((cell) => element("td", {}, cell))))));
 }
 
