@@ -15,7 +15,7 @@ tests=(
 )
 # The emulator computes vectors a hundred times slower and more: what simulates minutes of cloth or megabytes of noise is left out. The
 # golden hashes have the same code.
-quick_enough='-NoiseSlope.*:*ClothDynamics*:LineCutTest.*'
+quick_enough='-NoiseSlope.*:*ClothDynamics*:LineCutTest.*:Scenes/SceneSnapshot.*'
 on_arm64=(qemu-aarch64-static -L "$PWD/build/arm64-sysroot")
 
 build() {

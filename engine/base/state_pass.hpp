@@ -73,7 +73,7 @@ class StatePass {
   template <std::floating_point Number>
   void within(Number& value, double min, double max) {
     const Number passed = transfer(value);
-    // A number that is not one is in no range.
+    // NaN is in no range.
     accept(value, passed, static_cast<double>(passed) >= min && static_cast<double>(passed) <= max);
   }
   template <std::floating_point Number>

@@ -59,8 +59,8 @@ class Scene {
   virtual const pose::Pose& pose() const noexcept = 0;
 
   /// The moving state: all that the poses of later ticks depend on, besides what the scene was made of and the wind.
-  /// For save_snapshot() and load_snapshot(), with made_of(). A loaded scene keeps its pose until its next tick. Poses
-  /// do not depend on the SIMD row, so that a snapshot may go on on another.
+  /// For save_snapshot() and load_snapshot(), with made_of(). A loaded scene keeps its pose until its next tick. The
+  /// state is the same on every SIMD row.
   virtual void list_state(StatePass& pass) = 0;
 };
 

@@ -29,17 +29,15 @@ bool has_parameter(const Description& kind, std::string_view name) {
   return std::ranges::any_of(kind.parameters, [&](const Parameter& parameter) { return parameter.name == name; });
 }
 
-/// The values of a kind as it is shipped; or with the parts that are off then; a small scene is quick.
-ParameterValues values_of(const Description& kind, bool is_other, bool is_small = false) {
+/// The values of a kind as it is shipped, or with the parts that are off then; of a small scene, which is quick.
+ParameterValues values_of(const Description& kind, bool is_other) {
   ParameterValues::Map given;
   if (is_other && has_parameter(kind, "hybrid")) given["hybrid"] = kind.name == "grass" ? 0.5 : 1.0;
   if (is_other && has_parameter(kind, "gusts")) given["gusts"] = std::string("own");
   if (is_other && has_parameter(kind, "form")) given["form"] = std::string("texture");
-  if (is_small) {
-    for (const std::string_view name : {"columns", "rows", "blades_across", "blades_deep", "hairs_along",
-                                        "hairs_around", "leaves", "branch_links", "twigs"}) {
-      if (has_parameter(kind, name)) given[std::string(name)] = std::int64_t{16};
-    }
+  for (const std::string_view name : {"columns", "rows", "blades_across", "blades_deep", "hairs_along", "hairs_around",
+                                      "leaves", "branch_links", "twigs"}) {
+    if (has_parameter(kind, name)) given[std::string(name)] = std::int64_t{16};
   }
   return ParameterValues::resolve(kind.parameters, given).value();
 }
@@ -106,7 +104,7 @@ TEST_P(SnapshotOnEachRow, EverySceneGoesOnWithTheSameBits) {
   for (const Description* kind : scene_table()) {
     for (const bool is_other : {false, true}) {
       SCOPED_TRACE(is_other ? "other values" : "default values");
-      expect_to_go_on(*kind, values_of(*kind, is_other, is_other), {.seed = 1, .row = GetParam()}, scripted_wind);
+      expect_to_go_on(*kind, values_of(*kind, is_other), {.seed = 1, .row = GetParam()}, scripted_wind);
     }
   }
 }
@@ -116,7 +114,7 @@ TEST_P(SnapshotOnEachRow, EverySceneGoesOnInAMeasuredWindWithTheSameBits) {
     for (const bool is_other : {false, true}) {
       SCOPED_TRACE(is_other ? "other values" : "default values");
       StationWind wind(GetParam());
-      expect_to_go_on(*kind, values_of(*kind, is_other, is_other),
+      expect_to_go_on(*kind, values_of(*kind, is_other),
                       {.seed = 1, .placement = {3.0, 0.0, -2.0, 30.0}, .row = GetParam(), .gusts = station_gusts()},
                       [&](std::uint64_t tick) { return wind.at(tick); });
     }
@@ -126,7 +124,7 @@ TEST_P(SnapshotOnEachRow, EverySceneGoesOnInAMeasuredWindWithTheSameBits) {
 /// What a row saves, any row loads: the bytes are the same.
 TEST_P(SnapshotOnEachRow, TheBytesAreThoseOfTheBaseRow) {
   for (const Description* kind : scene_table()) {
-    const ParameterValues values = values_of(*kind, false, true);
+    const ParameterValues values = values_of(*kind, false);
     Made here(*kind, values, {.seed = 1, .row = GetParam()});
     Made base(*kind, values, {.seed = 1, .row = kBaseSimdRow});
     for (std::uint64_t tick = 0; tick < kTicksBefore; ++tick) {
@@ -141,7 +139,7 @@ class SceneSnapshot : public testing::TestWithParam<const Description*> {
  protected:
   /// A small scene that moves.
   static Made moving() {
-    Made made(*GetParam(), values_of(*GetParam(), false, true), {.seed = 1});
+    Made made(*GetParam(), values_of(*GetParam(), false), {.seed = 1});
     for (std::uint64_t tick = 0; tick < kTicksBefore; ++tick) made.scene->tick(scripted_wind(tick), kSnapshotTick_s);
     return made;
   }
@@ -161,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SceneSnapshot, testing::ValuesIn(scene_table().
 
 TEST_P(SceneSnapshot, OfAnotherConfigurationIsRefused) {
   const std::vector<std::uint8_t> snapshot = moving().save();
-  const ParameterValues values = values_of(*GetParam(), false, true);
+  const ParameterValues values = values_of(*GetParam(), false);
   ParameterValues other = values;
   const Parameter& last = *std::ranges::find_if(
       GetParam()->parameters, [](const Parameter& it) { return std::holds_alternative<double>(it.default_value); });
@@ -180,7 +178,7 @@ TEST_P(SceneSnapshot, OfAnotherConfigurationIsRefused) {
 
 TEST_P(SceneSnapshot, DamagedOrTruncatedIsRefusedAndChangesNothing) {
   const std::vector<std::uint8_t> snapshot = moving().save();
-  Made made(*GetParam(), values_of(*GetParam(), false, true), {.seed = 1});
+  Made made(*GetParam(), values_of(*GetParam(), false), {.seed = 1});
   const std::vector<std::uint8_t> before = made.save();
   const math::RandomStream random(7, math::stream_id("damage"));
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -200,7 +198,7 @@ TEST_P(SceneSnapshot, DamagedOrTruncatedIsRefusedAndChangesNothing) {
 TEST_P(SceneSnapshot, AStateThatDoesNotFitIsRefusedAlsoWhereTheChecksumIsRight) {
   Made saved = moving();
   const std::vector<std::uint8_t> state = state_of(saved);
-  Made made(*GetParam(), values_of(*GetParam(), false, true), {.seed = 1});
+  Made made(*GetParam(), values_of(*GetParam(), false), {.seed = 1});
   const std::vector<std::uint8_t> before = made.save();
 
   std::vector<std::uint8_t> shorter = state;
@@ -226,7 +224,7 @@ TEST_P(SceneSnapshot, AStateThatDoesNotFitIsRefusedAlsoWhereTheChecksumIsRight) 
 TEST_P(SceneSnapshot, RandomStateIsRefusedOrGoesOn) {
   Made saved = moving();
   const std::vector<std::uint8_t> state = state_of(saved);
-  Made made(*GetParam(), values_of(*GetParam(), false, true), {.seed = 1});
+  Made made(*GetParam(), values_of(*GetParam(), false), {.seed = 1});
   const math::RandomStream random(8, math::stream_id("damage"));
   for (std::uint64_t i = 0; i < 100; ++i) {
     std::vector<std::uint8_t> damaged = state;
@@ -235,7 +233,9 @@ TEST_P(SceneSnapshot, RandomStateIsRefusedOrGoesOn) {
       damaged[place] = static_cast<std::uint8_t>(255.0 * random.uniform(16 * i + 2 * k + 1));
     }
     const std::vector<std::uint8_t> before = made.save();
-    if (!made.load(with_state(made, damaged))) EXPECT_EQ(made.save(), before);
+    if (!made.load(with_state(made, damaged))) {
+      EXPECT_EQ(made.save(), before);
+    }
     for (std::uint64_t tick = 0; tick < 3; ++tick) made.scene->tick(scripted_wind(tick), kSnapshotTick_s);
   }
 }
