@@ -8,14 +8,14 @@ source tests/support/stages.sh
 
 # Those of tests/engine, joined and alone, and tests/drivers/decode.
 tests=(
-  engine/scenes/golden_test engine_tests engine_tests_threadless
+  engine/scenes/golden_test engine/scenes/scene_snapshot_test engine/wind/wind_snapshot_test engine_tests engine_tests_threadless
   engine/scenes/scene_allocation_test engine/wind/blend_allocation_test engine/wire/frame_encoder_test
   drivers/drivers_decode_modbus_test drivers/drivers_decode_text_test drivers/drivers_decode_marine_test
   drivers/drivers_decode_bytes_test drivers/drivers_decode_mic_test drivers/drivers_decode_network_test
 )
 # The emulator computes vectors a hundred times slower and more: what simulates minutes of cloth or megabytes of noise is left out. The
 # golden hashes have the same code.
-quick_enough='-NoiseSlope.*:*ClothDynamics*:LineCutTest.*'
+quick_enough='-NoiseSlope.*:*ClothDynamics*:LineCutTest.*:Scenes/SceneSnapshot.*'
 on_arm64=(qemu-aarch64-static -L "$PWD/build/arm64-sysroot")
 
 build() {

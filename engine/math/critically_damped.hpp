@@ -36,6 +36,12 @@ struct CriticallyDamped {
     rate_per_s = decay * ((1.0 - phase) * rate - omega_rad_s * phase * distance);
   }
 
+  /// StatePass's.
+  template <class Pass>
+  void list_state(Pass& pass) {
+    pass(value, rate_per_s);
+  }
+
  private:
   /// exp(-700) is 1e-304: the remaining distance is negligible.
   static constexpr double kArrived = 700.0;

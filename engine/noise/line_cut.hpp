@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/torus.hpp"
 
 namespace yuragi::noise {
@@ -31,6 +32,8 @@ class LineCut {
   static TorusPhase apart(double distance_m, double period_m) noexcept {
     return {torus_phase(distance_m * kEast, period_m), torus_phase(distance_m * kSouth, period_m)};
   }
+
+  void list_state(StatePass& pass) { pass(x_, z_); }
 
  private:
   TorusTravel x_, z_;

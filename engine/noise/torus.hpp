@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/noise_tile.hpp"
 
 namespace yuragi::noise {
@@ -34,6 +35,11 @@ class TorusTravel {
 
   std::uint32_t phase() const noexcept { return phase_; }
 
+  void list_state(StatePass& pass) {
+    pass(phase_);
+    pass.within(remainder_, -0.5, 0.5);
+  }
+
  private:
   std::uint32_t phase_ = 0;
   double remainder_ = 0.0;  ///< in units of the phase, at most 0.5 in either direction
@@ -45,6 +51,7 @@ struct TorusOffset {
   TorusTravel z;  ///< toward south
 
   TorusPhase phase() const noexcept { return {x.phase(), z.phase()}; }
+  void list_state(StatePass& pass) { pass(x, z); }
 };
 
 /// May this tile be read? Its size is a power of two, 2 to 2^16, and it has all its values.

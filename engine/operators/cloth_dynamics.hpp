@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/operators/cloth_projection_job.hpp"
 #include "engine/operators/cloth_spline.hpp"
 
@@ -49,6 +50,8 @@ class CoarseCloth {
   }
   float link_length_m() const noexcept { return link_length_m_; }
   std::span<const float> rest_link_m() const noexcept { return rest_link_m_; }  ///< x, y, z of each column's links
+
+  void list_state(StatePass& pass) { pass(offset_m_, speed_m_s_, lean_); }
 
  private:
   friend struct ClothDynamicsJob;

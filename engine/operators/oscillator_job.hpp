@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 
 namespace yuragi::operators {
 
@@ -52,6 +53,8 @@ struct OscillatorSteps {
 struct Oscillators {
   explicit Oscillators(std::size_t count = 0)
       : value_east(count), rate_east(count), value_south(count), rate_south(count) {}
+
+  void list_state(StatePass& pass) { pass(value_east, rate_east, value_south, rate_south); }
 
   std::vector<float> value_east, rate_east, value_south, rate_south;
 };

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::operators {
 
 /// The recent history of some values: the noise that propagates along a chain.
@@ -34,6 +36,12 @@ class PropagationHistory {
 
   /// The values of delay_s ago (at least 0; limited to the maximum delay). Valid until the next push().
   Between at(double delay_s) const noexcept;
+
+  void list_state(StatePass& pass) {
+    pass(samples_, present_);
+    pass.index(latest_, count_);
+    pass.within(phase_, 0.0, 1.0);
+  }
 
  private:
   /// The place of the sample that is `age` (below count_) older than the newest.

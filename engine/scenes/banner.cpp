@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
@@ -199,6 +200,11 @@ class Banner final : public Scene {
     cloth_.blow(turn.cosine * wind_.east_m_s() + turn.sine * wind_.south_m_s(),
                 turn.cosine * wind_.south_m_s() - turn.sine * wind_.east_m_s(), gusts_);
     cloth_.project(dt_s, 1.0, turn);
+  }
+
+  void list_state(StatePass& pass) override {
+    pass(wind_, strength_, cloth_, waves_, cross_, vane_);
+    pass.within(turned_rad_, -4.0, 4.0);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/band_limited_tile.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus.hpp"
@@ -78,6 +79,10 @@ class CarriedNoise {
   /// Between these its values are.
   double lowest() const noexcept { return lowest_; }
   double highest() const noexcept { return highest_; }
+
+  void list_state(StatePass& pass) {
+    for (Tile& tile : tiles_) pass(tile.offset);
+  }
 
  private:
   struct Tile {

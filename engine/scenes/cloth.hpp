@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/operators/cloth_dynamics.hpp"
 #include "engine/operators/cloth_projection_job.hpp"
 #include "engine/operators/cloth_spline.hpp"
@@ -94,6 +95,8 @@ class Cloth {
   /// The bound of a tick in which no knot's lean, nor the kept rest lean, changes by more than `lean_step` together,
   /// and the cloth is turned by no more than `turn_step_rad`. Derived in cloth.cpp.
   double largest_joint_step_m(double dt_s, double lean_step, double turn_step_rad = 0.0) const noexcept;
+
+  void list_state(StatePass& pass) { pass(coarse_); }
 
  private:
   void turn_edge(ClothTurn turn) noexcept;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/scenes/carried_noise.hpp"
 
 namespace yuragi::scenes {
@@ -42,6 +43,8 @@ class ClothNoise {
     const float square = x * x;
     return kMost * x * (27.0F + square) / (27.0F + 9.0F * square);
   }
+
+  void list_state(StatePass& pass) { pass(noise_); }
 
  private:
   SimdRow row_;

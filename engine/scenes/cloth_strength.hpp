@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 
 namespace yuragi::scenes {
@@ -29,6 +30,8 @@ class ClothStrength {
   static double largest_step(double dt_s) noexcept {
     return std::min(2.0 * kOmega_rad_s / std::numbers::e * dt_s, 1.0);
   }
+
+  void list_state(StatePass& pass) { pass(follower_); }
 
  private:
   static constexpr double kOmega_rad_s = 8.0;

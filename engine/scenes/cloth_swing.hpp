@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 
 namespace yuragi::scenes {
@@ -43,6 +44,8 @@ struct ClothSwing {
     rate_per_s = std::clamp(now_per_s, -largest_rate_per_s, largest_rate_per_s);
     return 0.5 * (before_per_s + rate_per_s);
   }
+
+  void list_state(StatePass& pass) { pass(value, rate_per_s); }
 
   static constexpr double kAtRest = 1e-6;
 };

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/scenes/cloth_noise.hpp"
 
 namespace yuragi::scenes {
@@ -37,6 +38,8 @@ class ClothWaves {
 
   /// The maximum change of a value in a tick, at up to speed_m_s.
   double largest_change(double speed_m_s, double dt_s) const noexcept;
+
+  void list_state(StatePass& pass) { pass(noise_); }
 
  private:
   ClothNoise noise_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/operators/propagation_job.hpp"
@@ -274,6 +275,10 @@ class Curtain final : public Scene {
     for (float& gust : gust_) gust *= static_cast<float>(1.0 / ClothNoise::kLargest);
     cloth_.blow(wind_.east_m_s(), wind_.south_m_s(), gust_);
     cloth_.project(dt_s);
+  }
+
+  void list_state(StatePass& pass) override {
+    pass(wind_, strength_, gust_noise_, breath_noise_, hem_noise_, cloth_, first_, second_, sideways_, history_);
   }
 
  private:

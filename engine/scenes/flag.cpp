@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/portable.hpp"
@@ -261,6 +262,10 @@ class Flag final : public Scene {
     cloth_.project(dt_s, cosine * cosine);
   }
 
+  void list_state(StatePass& pass) override {
+    pass(wind_, strength_, lift_east_, lift_south_, cloth_, waves_, edge_waves_);
+  }
+
  private:
   /// An oscillator on one axis: OscillatorStep's.
   struct Lift {
@@ -274,6 +279,8 @@ class Flag final : public Scene {
       rate_per_s = step.v_from_e * distance + step.v_from_v * rate_per_s;
       if (std::abs(value) + std::abs(rate_per_s) < kAtRest) *this = {};
     }
+
+    void list_state(StatePass& pass) { pass(value, rate_per_s); }
   };
 
   Flag(const ClothEdge& edge, const FlagSettings& settings, const Setup& setup)

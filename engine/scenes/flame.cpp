@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
@@ -279,6 +280,11 @@ class Flame final : public Scene {
     const double farthest_m = body_.largest_radius_m * (1.0 + flicker_ * largest_noise);
     return step_m * (1.0 + axis_.largest_slope()) + farthest_m * axis_.largest_slope_step(dt_s) +
            axis_.largest_step_m(dt_s);
+  }
+
+  void list_state(StatePass& pass) override {
+    pass(wind_, kindled_, axis_, noise_, pace_at_);
+    pass.within(puffed_, 0.0, 1.0);
   }
 
  private:

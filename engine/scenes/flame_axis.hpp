@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/noise/line_cut.hpp"
 #include "engine/noise/noise_tile.hpp"
@@ -65,12 +66,15 @@ class FlameAxis {
   double largest_slope_step(double dt_s) const noexcept;
   double largest_slope() const noexcept;
 
+  void list_state(StatePass& pass) { pass(wobbled_, lean_east_, lean_south_, missing_, history_); }
+
  private:
   /// The channels of the history: leans, and the missing part of the length.
   enum Channel : std::size_t { kLeanEast, kLeanSouth, kMissing, kWobbleEast, kWobbleSouth, kChannels };
   struct Oscillator {
     double value = 0.0, rate = 0.0;
     void step(const operators::OscillatorStep& step, double target) noexcept;
+    void list_state(StatePass& pass) { pass(value, rate); }
   };
 
   FlameAxisSpec spec_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/portable.hpp"
@@ -191,6 +192,8 @@ class Fur final : public Scene {
         operators::OscillatorStep::largest_rate_per_s(sway_.natural_hz, sway_.damping_ratio) * dt_s * largest_bend_rad);
     return lever_m_ * ((1.0 - sway_.hybrid) * bend_rad + sway_.hybrid * swaying_rad);
   }
+
+  void list_state(StatePass& pass) override { pass(wind_, strokes_, oscillators_); }
 
  private:
   Fur(Coat coat, const FurSway& sway, const Setup& setup)

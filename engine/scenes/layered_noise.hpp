@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus.hpp"
@@ -63,6 +64,10 @@ class LayeredNoise {
   /// Bounds of the sum, for all weights.
   double lowest() const noexcept { return lowest_; }
   double highest() const noexcept { return highest_; }
+
+  void list_state(StatePass& pass) {
+    for (Layer& layer : layers_) pass(layer.offset);
+  }
 
  private:
   struct Layer {

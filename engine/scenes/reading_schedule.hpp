@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::scenes {
 
 /// Decides which part of a grid is read at which tick, so that each part is read kReadings_hz times a second and each
@@ -57,6 +59,11 @@ class ReadingSchedule {
     const double period_s = due.lead_s / parts;
     const double variance_s2 = (parts * parts - 1.0) * period_s * period_s / 12.0;
     return 1.0 / std::sqrt(1.0 / (omega_rad_s * omega_rad_s) - variance_s2);
+  }
+
+  void list_state(StatePass& pass) {
+    pass(last_);
+    pass.within(period_s_, 1e-6, StatePass::kLargest);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/noise/von_karman_corner.hpp"
@@ -251,6 +252,11 @@ class Ripple final : public Scene {
     const double height_step_m = part_step * std::abs(square_of(short_per_m) - square_of(long_per_m)) /
                                  (2.0 * long_per_m * square_of(long_per_m));
     return rough_.largest_slope() * ((followed * largest_wave + wave_step) / long_per_m + height_step_m * largest_wave);
+  }
+
+  void list_state(StatePass& pass) override {
+    pass(wind_, long_part_, waves_, gusts_, rough_);
+    if (outside_) pass(*outside_);
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/noise_tile.hpp"
 
 namespace yuragi::scenes {
@@ -48,6 +49,8 @@ class RoughWater {
   void sample(SimdRow row, std::span<float> slope) const noexcept;
 
   double largest_slope() const noexcept;
+
+  void list_state(StatePass& pass) { pass(value_, rate_per_s_); }
 
  private:
   RoughWaterSpec spec_;

@@ -8,6 +8,7 @@
 #include "engine/base/parameter.hpp"
 #include "engine/base/part.hpp"
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
@@ -56,6 +57,11 @@ class Scene {
 
   /// The pose after the last tick; the rest pose before the first.
   virtual const pose::Pose& pose() const noexcept = 0;
+
+  /// The moving state: all that the poses of later ticks depend on, besides what the scene was made of and the wind.
+  /// For save_snapshot() and load_snapshot(), with made_of(). A loaded scene keeps its pose until its next tick. The
+  /// state is the same on every SIMD row.
+  virtual void list_state(StatePass& pass) = 0;
 };
 
 /// A scene's placement in the world: its origin, and its north.
@@ -75,6 +81,10 @@ struct Setup {
   /// If null, the wind is uniform, and the scene's own noise varies it from place to place.
   std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr;
 };
+
+/// A hash of what a scene was made of: its kind, all values, its seed, its place, and the noise of the wind's gusts;
+/// not the SIMD row. Of a snapshot it is `made_of`.
+std::uint64_t made_of(std::string_view kind, const ParameterValues& values, const Setup& setup);
 
 /// A former parameter of a scene.
 struct RetiredParameter {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
@@ -37,6 +38,8 @@ class Wind {
   double east_m_s() const noexcept { return east_.value; }
   double south_m_s() const noexcept { return south_.value; }
   double speed_m_s() const noexcept;
+
+  void list_state(StatePass& pass) { pass(east_, south_); }
 
   static double largest_step_m_s(double dt_s) noexcept;
 

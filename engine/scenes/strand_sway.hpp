@@ -77,6 +77,12 @@ class StrandSway final : public Scene {
   /// the strand's length (and a link) times that, because link i of n turns by i/n of the bend.
   double largest_joint_step_m(double dt_s) const noexcept override;
 
+  void list_state(StatePass& pass) override {
+    pass(wind_, oscillators_);
+    if (own_) pass(own_->noise, own_->way);
+    if (outside_) pass(outside_->grid, outside_->canopy);
+  }
+
  private:
   /// The scene's own gusts.
   struct OwnGusts {

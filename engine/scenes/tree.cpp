@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/fields.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/portable.hpp"
@@ -380,6 +381,12 @@ class Tree final : public Scene {
     double step_m = levers_m_[kLeaves] * largest_leaf_step_rad(dt_s);
     for (const Wood& wood : wood_) step_m += levers_m_[wood.level] * largest_wood_step_rad(wood, dt_s);
     return step_m;
+  }
+
+  void list_state(StatePass& pass) override {
+    pass(wind_, middle_wind_, noise_, crown_noise_, leaf_noise_);
+    for (Wood& wood : wood_) pass(wood.oscillators);
+    if (outside_) pass(*outside_);
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/noise_tile.hpp"
 #include "engine/scenes/gust_nodes.hpp"
 #include "engine/scenes/reading_schedule.hpp"
@@ -49,6 +50,8 @@ class WindGrid {
   /// The wind at the places from `first` on; the outputs set the number.
   void sample(std::size_t first, std::span<float> east_m_s, std::span<float> south_m_s) const noexcept;
 
+  void list_state(StatePass& pass) { pass(east_, south_, schedule_, due_in_s_, has_targets_); }
+
  private:
   /// The nodes, and the positions of the places between them.
   struct Layout {
@@ -62,6 +65,8 @@ class WindGrid {
     std::vector<float> value, target, rate_per_s;
     std::vector<float> next_target;  ///< where the target goes
     noise::Tile2 on_torus;           ///< the values, for reading between the nodes
+
+    void list_state(StatePass& pass) { pass(value, target, rate_per_s, next_target); }
   };
 
   void approach_targets(double dt_s) noexcept;

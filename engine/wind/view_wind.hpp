@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::wind {
@@ -26,6 +27,11 @@ class ViewWind {
 
   /// Where the wind comes from, degrees clockwise from north, [0, 360).
   double from_deg() const noexcept { return from_deg_; }
+
+  void list_state(StatePass& pass) {
+    pass.within(from_deg_, 0.0, 360.0);
+    pass(mean_, live_s_, age_s_, is_turning_);
+  }
 
  private:
   double from_deg_;

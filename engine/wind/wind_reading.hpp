@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::wind {
@@ -25,6 +26,11 @@ struct Reading {
   /// A repetition of the reading before, which still holds (a paused recording): its source is not silent, but the
   /// repetition is not used for fits, checked or recorded.
   bool is_held = false;
+
+  void list_state(StatePass& pass) {
+    pass(time.mono, time.utc, speed_m_s, direction_deg, gust_m_s, is_held);
+    pass.choice(quality, ReadingQuality::kSimulated);
+  }
 };
 
 /// The fastest wind that a reading may claim: above the strongest surface gust on record (113 m/s, Barrow Island 1996,

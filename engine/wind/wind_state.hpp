@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wind/wind_vector.hpp"
 
@@ -27,6 +28,13 @@ struct State {
   double to_middle_s = 0.0;  ///< the time of a gust from there to the middle; 0 if it has already passed it
   /// true: that place is the sensors' configured position; false: it is the windward edge
   bool is_place_configured = false;
+
+  void list_state(StatePass& pass) {
+    pass(time, wind, live_weight, upwind_m, is_place_configured);
+    pass.choice(source, Source::kLive);
+    pass.total(reading_age_s);
+    pass.total(to_middle_s);
+  }
 };
 
 }  // namespace yuragi::wind

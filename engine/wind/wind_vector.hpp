@@ -8,6 +8,11 @@ struct Vector {
   double u_m_s = 0.0;
   double v_m_s = 0.0;
 
+  template <class Pass>
+  void list_state(Pass& pass) {
+    pass(u_m_s, v_m_s);
+  }
+
   friend Vector operator+(Vector a, Vector b) { return {a.u_m_s + b.u_m_s, a.v_m_s + b.v_m_s}; }
   friend Vector operator-(Vector a, Vector b) { return {a.u_m_s - b.u_m_s, a.v_m_s - b.v_m_s}; }
   friend Vector operator*(double k, Vector a) { return {k * a.u_m_s, k * a.v_m_s}; }

@@ -10,7 +10,7 @@ LINK = re.compile(r"\b(?:LINK|PUBLIC|PRIVATE|INTERFACE)\b(?P<targets>.*)", re.DO
 
 # How the headers of a library begin. One that is not here has none that a room includes.
 HEADERS = {
-    "Boost::headers": "boost/lockfree boost/system boost/uuid",
+    "Boost::headers": "boost/crc boost/lockfree boost/system boost/uuid",
     "CLI11::CLI11": "CLI",
     "PkgConfig::CRYPTO": "openssl",
     "PkgConfig::CURL": "curl",

@@ -31,6 +31,7 @@ class FailingScene final : public scenes::Scene {
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   double largest_joint_step_m(double /*dt_s*/) const noexcept override { return 0.0; }
   const pose::Pose& pose() const noexcept override { return pose_; }
+  void list_state(StatePass& /*pass*/) override {}
 
  private:
   pose::Skeleton skeleton_;

@@ -94,6 +94,12 @@ bool BlendedEstimator::accept(std::size_t index, const Reading& reading) noexcep
                                           .advection_m_s = std::max(advection_m_s_, kMinAdvection_m_s)});
 }
 
+void BlendedEstimator::list_state(StatePass& pass) {
+  pass(sources_, choice_, reach_fit_, ground_, stroke_, advection_m_s_, state_, reach_m_, has_begun_, shares_);
+  pass.total(last_step_s_);
+  if (settings_.site) pass(*settings_.site);
+}
+
 TakenValue BlendedEstimator::taken(std::size_t source) const noexcept {
   return source < sources_.size() ? sources_[source].taken() : TakenValue{};
 }

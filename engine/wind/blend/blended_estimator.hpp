@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/gust_reach_fit.hpp"
 #include "engine/wind/blend/mean_wind_plane.hpp"
@@ -97,6 +98,9 @@ class BlendedEstimator {
   /// The remaining noise at the place of a sensor, where most is known.
   turbulence::GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
 
+  /// The site's spectrum included. What each advance() computes anew is left out.
+  void list_state(StatePass& pass);
+
  private:
   static constexpr std::size_t kBands = turbulence::OctaveFollower::kBands;
   static constexpr std::size_t kOctaves = turbulence::GustNoise::kOctaves;
@@ -107,6 +111,8 @@ class BlendedEstimator {
     double middle = 0.0;    ///< of the mean at the middle of the scenes
     double tilt = 0.0;      ///< the plane's addition there; it and the slopes follow the plane slowly
     double per_m_east = 0.0, per_m_south = 0.0;
+
+    void list_state(StatePass& pass) { pass(weights, middle, tilt, per_m_east, per_m_south); }
   };
 
   /// The output at one place.

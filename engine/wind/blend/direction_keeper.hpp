@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/wind_reading.hpp"
 #include "engine/wind/wind_vector.hpp"
 
@@ -38,6 +39,11 @@ class DirectionKeeper {
   /// (Widrow 1961: by its characteristic function). The fluctuation is in von Karman's inertial range, of deviation
   /// `swing_rad` and time scale `time_scale_s`.
   void expect(double swing_rad, double time_scale_s, double interval_s) noexcept;
+
+  void list_state(StatePass& pass) {
+    pass.unit_vector(toward_.u_m_s, toward_.v_m_s);
+    pass(is_known_, has_vane_, memory_s_, last_deg_, turns_of_16_, turns_of_8_, was_fine_);
+  }
 
  private:
   static constexpr double kCoarse_deg = 15.0;

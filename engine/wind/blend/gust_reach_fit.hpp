@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
 #include "engine/wind/turbulence/octave_follower.hpp"
 
@@ -27,6 +28,13 @@ struct GustReach {
   std::optional<double> along() const noexcept;
 
   bool operator==(const GustReach&) const = default;
+
+  void list_state(StatePass& pass) {
+    pass.within(across_ln, -2.0, 2.0);
+    pass.within(along_ln, -2.0, 2.0);
+    pass.within(across_variance, 0.0, kPriorVariance);
+    pass.within(along_variance, 0.0, kPriorVariance);
+  }
 };
 
 /// May that have been learnt? Pure.
@@ -60,6 +68,11 @@ class GustReachFit {
   /// Continues from an earlier run's result. Returns false, and changes nothing, if it is implausible.
   bool restore(const GustReach& reach) noexcept;
 
+  void list_state(StatePass& pass) {
+    pass(traces_, paces_, reach_, covariance_);
+    pass.total(since_observed_s_);
+  }
+
  private:
   /// A band of one place at a moment, relative to the mean speed, and the position along the wind's way.
   struct Sample {
@@ -67,6 +80,13 @@ class GustReachFit {
     double carried_east_m = 0.0, carried_south_m = 0.0;
     Vector gust{};
     bool is_known = false;
+
+    void list_state(StatePass& pass) {
+      pass.total(way_m);
+      pass.total(carried_east_m);
+      pass.total(carried_south_m);
+      pass(gust, is_known);
+    }
   };
   static constexpr std::size_t kSamples = 128;
 
@@ -75,6 +95,8 @@ class GustReachFit {
     std::array<Sample, kSamples> ring{};
     double power = 0.0;    ///< mean square of its gusts over the mean speed
     double known_s = 0.0;  ///< duration of its measurement
+
+    void list_state(StatePass& pass) { pass(ring, power, known_s); }
   };
 
   Trace& trace(std::size_t place, std::size_t band) noexcept { return traces_[place * kBands + band]; }
@@ -91,6 +113,11 @@ class GustReachFit {
   struct Pace {
     double since_s = 0.0;    ///< since the last sample
     std::size_t newest = 0;  ///< its place in the rings
+
+    void list_state(StatePass& pass) {
+      pass(since_s);
+      pass.index(newest, kSamples);
+    }
   };
   std::array<Pace, kBands> paces_{};
   GustReach reach_;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::wind::blend {
 
 /// How often a source reports something new, from the gaps between its readings (engine/wind/model.md W38).
@@ -33,6 +35,12 @@ class ReadingInterval {
   /// Returns true if the interval is known well. Not while all readings so far are the same few, which can be one
   /// message of a station that repeats each.
   bool is_settled() const noexcept { return is_settled_; }
+
+  void list_state(StatePass& pass) {
+    for (double& gap_s : gaps_s_) pass.total(gap_s);
+    pass(seen_, is_in_bursts_, is_settled_);
+    for (double* time_s : {&interval_s_, &since_new_s_, &soonest_change_s_}) pass.total(*time_s);
+  }
 
  private:
   static constexpr std::size_t kKept = 16;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::wind::blend {
 
 /// The gain of a relative source: a slow regression against the absolute sources at the same time.
@@ -24,6 +26,13 @@ class RelativeScale {
   /// For the mean, and for the gusts: 0.05 to 20.
   double mean_gain() const noexcept { return mean_gain_; }
   double gust_gain() const noexcept { return gust_gain_; }
+
+  void list_state(StatePass& pass) {
+    for (double* sum : {&weight_s_, &speed_, &relative_speed_, &square_, &relative_square_, &gusts_seen_}) {
+      pass.within(*sum, -StatePass::kLargestTotal, StatePass::kLargestTotal);
+    }
+    pass(mean_gain_, gust_gain_);
+  }
 
  private:
   double memory_s_;

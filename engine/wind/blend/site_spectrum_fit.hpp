@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wind/turbulence/wind_turbulence.hpp"
 
@@ -29,6 +30,8 @@ class SiteSpectrumFit {
                turbulence::SiteSpectrum& site) noexcept;
   /// After a gap.
   void break_off() noexcept;
+
+  void list_state(StatePass& pass) { pass(slow_, sum_, count_); }
 
  private:
   void update(const Observation& observation, const turbulence::WindTurbulence& quick,

@@ -10,7 +10,6 @@ namespace {
 
 /// A critically damped step has covered 91 % after 4 time constants (engine/METHOD.md M18).
 constexpr double kRateTimesHandover = 4.0;
-constexpr int kMaxFailures = 7;
 constexpr double kForgivenAfter_s = 600.0;
 
 }  // namespace

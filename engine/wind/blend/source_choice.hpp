@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 
@@ -35,7 +36,11 @@ class SourceChoice {
   /// Its weight, 0 to 1, in the gusts that the selected absolute sources do not resolve.
   double gusts(std::size_t source) const noexcept { return std::clamp(entries_[source].gusts.value, 0.0, 1.0); }
 
+  void list_state(StatePass& pass) { pass(has_begun_, entries_); }
+
  private:
+  static constexpr int kMaxFailures = 7;  ///< counted
+
   struct Entry {
     bool is_relative = false;
     int priority = 0;
@@ -48,6 +53,15 @@ class SourceChoice {
     int failures = 0;
     double weight_wanted = 0.0, gusts_wanted = 0.0;
     math::CriticallyDamped weight, gusts;
+
+    /// All but what its settings are.
+    void list_state(StatePass& pass) {
+      pass(is_live, was_live, is_ready, is_chosen, weight_wanted, gusts_wanted, weight, gusts);
+      pass.total(live_for_s);
+      auto failed = static_cast<std::size_t>(failures);
+      pass.index(failed, kMaxFailures + 1);
+      failures = static_cast<int>(failed);
+    }
   };
 
   template <class MayTake>

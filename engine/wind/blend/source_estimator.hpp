@@ -4,6 +4,7 @@
 #include <complex>
 #include <memory>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/direction_keeper.hpp"
@@ -88,6 +89,14 @@ class SourceEstimator {
   const turbulence::GustVariances& across() const noexcept { return across_; }
 
   RelativeScale scale;  ///< of a relative source
+
+  /// Without the site's spectrum, which sources share.
+  void list_state(StatePass& pass) {
+    pass.choice(taken_, ReadingValue::kUnknown);
+    pass(record_, direction_, wind_, follower_, trusts_, trust_, full_trust_, passed_, unfolded_, interval_s_,
+         speed_m_s_, measured_s_, measured_, turbulence_, along_, across_, site_fit_, since_kept_, scale);
+    pass.total(fitted_s_);
+  }
 
  private:
   void begin() noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/blend/reading_interval.hpp"
 #include "engine/wind/source_report.hpp"
 
@@ -63,6 +64,8 @@ class SourceRecord {
             .is_overdue = is_live_now && !is_on_time(now, stale_intervals),
             .last = last_};
   }
+
+  void list_state(StatePass& pass) { pass(last_, interval_); }
 
  private:
   bool is_on_time(MonoTime now, double stale_intervals) const noexcept {

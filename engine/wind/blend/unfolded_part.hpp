@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::wind::blend {
 
 /// The share of the wind's own power in a source's samples at a frequency (von_karman_unfolded_part()), computed with
@@ -16,6 +18,11 @@ class UnfoldedPart {
 
   /// 0.001 to 1.
   double at(double frequency_hz) const noexcept;
+
+  void list_state(StatePass& pass) {
+    pass.within(interval_s_, 1e-9, StatePass::kLargest);
+    pass.within(std::span<double>(parts_), 0.0, 1.0);
+  }
 
  private:
   static constexpr std::size_t kAnOctave = 4;

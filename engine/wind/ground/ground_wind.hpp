@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
 #include "engine/wind/ground/wind_tapes.hpp"
 #include "engine/wind/turbulence/gust_noise.hpp"
@@ -19,6 +20,9 @@ struct WindSlope {
   Vector per_m_east, per_m_south;       ///< (m/s) / m
   double west_m = 0.0, east_m = 0.0;    ///< ends of the plane, metres east of the middle of the scene
   double north_m = 0.0, south_m = 0.0;  ///< and south of it
+
+  /// All but its ends, which never change.
+  void list_state(StatePass& pass) { pass(per_m_east, per_m_south); }
 
   /// The difference of the wind at a place from that in the middle of the scene.
   Vector at(double at_east_m, double at_south_m) const noexcept {
@@ -44,6 +48,9 @@ struct Wind {
   /// The number of the animation's tick, by which scenes spread slow work over several ticks (ReadingSchedule). Without
   /// it, all is done at once.
   std::optional<std::uint64_t> tick;
+
+  /// What the maker of the wind keeps from tick to tick; the rest is added later.
+  void list_state(StatePass& pass) { pass(everywhere, slope, gusts, advection); }
 
   Wind() = default;
   /// The same wind everywhere.

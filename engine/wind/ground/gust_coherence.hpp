@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/portable.hpp"
 #include "engine/noise/von_karman_corner.hpp"
 
@@ -31,6 +32,11 @@ struct GustCoherence {
   double decay_across = 12.0;       ///< C_y
   double decay_along = 1.0;         ///< C_x
   double longest_wave_m = 2'048.0;  ///< longer waves are the same everywhere
+
+  void list_state(StatePass& pass) {
+    for (double* above_0 : {&speed_m_s, &length_m, &longest_wave_m}) pass.within(*above_0, 1e-6, StatePass::kLargest);
+    pass(decay_across, decay_along);
+  }
 
   /// C_y of a turbulence intensity.
   static double decay_across_of(double turbulence_intensity) noexcept {

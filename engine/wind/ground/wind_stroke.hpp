@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/ground/gust_coherence.hpp"
 #include "engine/wind/turbulence/gust_noise.hpp"
 #include "engine/wind/turbulence/octave_follower.hpp"
@@ -27,6 +28,12 @@ struct alignas(64) WindSample {
   Vector way;                                 ///< the noise's waves that are longer than the ground
   double east_m = 0.0, south_m = 0.0;  ///< the place, minus the distance that the wind had carried the gusts by then
   double gain = 1.0;                   ///< of the ceiling
+
+  void list_state(StatePass& pass) {
+    pass(east_m_s, north_m_s, known_along, known_across, mean, way, gain);
+    pass.total(east_m);
+    pass.total(south_m);
+  }
 };
 
 /// A sample between two.
@@ -41,6 +48,8 @@ struct WindPen {
   std::array<double, turbulence::OctaveFollower::kBands + 1> weights{};
   WindSample now;      ///< at this place
   WindSample written;  ///< the same without waves that are too short for the tape
+
+  void list_state(StatePass& pass) { pass(east_m, south_m, part, presence, weights, now, written); }
 };
 
 /// The addition of one tick of the estimator to the tapes. A value of some kilobytes that is passed from thread to
@@ -55,6 +64,16 @@ struct WindStroke {
   GustCoherence coherence;
   OctaveLanes octave_hz{};  ///< frequency at which each octave of the tiles passes
   std::array<WindPen, kMaxPens> pens;
+
+  /// All but the number of pens, which never changes.
+  void list_state(StatePass& pass) {
+    pass.within(way_m, 0.0, StatePass::kLargestTotal);
+    pass.total(carried_east_m);
+    pass.total(carried_south_m);
+    pass.unit_vector(ahead.u_m_s, ahead.v_m_s);
+    pass(coherence, octave_hz);
+    for (WindPen& pen : std::span(pens).first(pen_count)) pass(pen);
+  }
 };
 
 }  // namespace yuragi::wind::ground

@@ -34,7 +34,7 @@ WindSample between(const WindSample& first, const WindSample& second, double fra
 }
 
 void WindTape::write(const WindPen& pen, double way_m) noexcept {
-  const auto reached = static_cast<std::int64_t>(std::floor(way_m / kStep_m));
+  const std::int64_t reached = newest_at(way_m);
   now_ = pen.now;
   if (!has_begun_ || way_m < way_m_) {
     has_begun_ = true;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
 
 namespace yuragi::wind::ground {
@@ -44,7 +45,16 @@ class WindTape {
     return {&sample(number), &sample(number + 1), std::min(place - static_cast<double>(number), 1.0), left_m};
   }
 
+  void list_state(StatePass& pass) {
+    pass(samples_, has_begun_, now_, last_written_, one_back_);
+    pass.within(way_m_, 0.0, StatePass::kLargestTotal);
+    newest_ = newest_at(way_m_);
+  }
+
  private:
+  static std::int64_t newest_at(double way_m) noexcept {
+    return static_cast<std::int64_t>(std::floor(way_m / kStep_m));
+  }
   const WindSample& sample(std::int64_t number) const noexcept {
     return samples_[static_cast<std::size_t>(number & (kSamples - 1))];
   }

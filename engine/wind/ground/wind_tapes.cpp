@@ -153,6 +153,15 @@ void WindTapes::write(const WindStroke& stroke) noexcept {
                           [this](std::size_t tape, double distance_m) { return octaves_kept(tape, distance_m); });
 }
 
+void WindTapes::list_state(StatePass& pass) {
+  pass(tapes_);
+  for (auto& rows : std::span(kept_).first(tapes_.size())) pass(rows);
+  pass.index(pen_count_, tapes_.size() + 1);
+  std::size_t turn = next_row_ / kRowsATick;
+  pass.index(turn, kRows / kRowsATick);
+  next_row_ = turn * kRowsATick;
+}
+
 void WindTapes::renew_rows(bool all) noexcept {
   static_assert(kRows % kRowsATick == 0);
   keep(all ? 0 : next_row_, all ? kRows : kRowsATick);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/simd_row.hpp"
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/ground/gust_kriging.hpp"
 #include "engine/wind/ground/tape_kernels.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
@@ -71,6 +72,9 @@ class WindTapes {
   /// The same at the place of a sample, at that moment.
   static Reading at_pen(const WindSample& now) noexcept;
 
+  /// The rest of it follows from the next stroke.
+  void list_state(StatePass& pass);
+
  private:
   /// The kept part at some distances, evenly spread over its logarithm, with linear interpolation.
   static constexpr std::size_t kRowsAnOctave = 4;
@@ -81,6 +85,12 @@ class WindTapes {
     BandLanes bands{};
     OctaveLanes octaves{};  ///< in power
     double late_s = 0.0;    ///< delay of the remaining bands behind all of them
+
+    void list_state(StatePass& pass) {
+      pass.within(std::span<float>(bands), 0.0, 1.0);
+      pass.within(std::span<float>(octaves), 0.0, 1.0);
+      pass.within(late_s, 0.0, StatePass::kLargest);
+    }
   };
   struct Row {
     std::size_t below = 0;

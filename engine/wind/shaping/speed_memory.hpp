@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::wind::shaping {
 
 /// The distribution of wind speeds at a place: the time spent at each speed, with an exponential memory.
@@ -33,6 +35,8 @@ class SpeedMemory {
   /// kBins numbers from 0 to 1e12) is refused with false and changes nothing.
   std::span<const double, kBins> times_s() const noexcept { return times_s_; }
   bool restore(std::span<const double> times_s) noexcept;
+
+  void list_state(StatePass& pass) { pass.within(std::span<double>(times_s_), 0.0, StatePass::kLargestTotal); }
 
  private:
   double memory_s_;

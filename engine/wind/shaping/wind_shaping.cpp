@@ -109,6 +109,17 @@ void WindShaping::change(const WindShapingSettings& settings) noexcept {
 }
 
 /// Moves from the settings before a change to the new ones, and ends exactly at those.
+/// The ceiling follows from the settings, and during a change from the strengths.
+void WindShaping::list_state(StatePass& pass) {
+  pass(from_, now_, change_, memory_, median_m_s_, strong_m_s_, mean_, quick_mean_, site_, floor_, breeze_, opening_,
+       openness_, hand_, dark_, hand_m_s_, hand_from_deg_, hand_turn_rad_, speed_m_s_, ceiling_gain_, time_,
+       has_begun_);
+  for (double* total : {&live_s_, &unstored_s_, &known_s_, &blown_m_.u_m_s, &blown_m_.v_m_s, &blown_way_m_,
+                        &hand_blown_m_.u_m_s, &hand_blown_m_.v_m_s, &hand_way_m_}) {
+    pass.total(*total);
+  }
+}
+
 void WindShaping::change_strengths(double dt_s) noexcept {
   if (change_.value == 1.0) return;
   follow_to_the_end(change_, 1.0, kChangeOver_s, dt_s);

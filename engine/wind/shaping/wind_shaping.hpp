@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 #include "engine/wind/shaping/soft_ceiling.hpp"
@@ -106,12 +107,16 @@ class WindShaping {
   const SpeedMemory& memory() const noexcept { return memory_; }
   bool restore(std::span<const double> times_s) noexcept;
 
+  void list_state(StatePass& pass);
+
  private:
   /// The settings that act at once, at the present progress of a change.
   struct Strengths {
     double floor_m_s = 0.0;
     double gusts = 1.0;
     double per_ceiling_from_s_m = 0.0, per_ceiling_most_s_m = 0.0;  ///< 1 over a speed; 0: no ceiling
+
+    void list_state(StatePass& pass) { pass(floor_m_s, gusts, per_ceiling_from_s_m, per_ceiling_most_s_m); }
   };
   static Strengths strengths_of(const WindShapingSettings& settings) noexcept;
 

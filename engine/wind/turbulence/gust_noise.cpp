@@ -102,7 +102,7 @@ noise::Tile2 make_strength(std::uint64_t seed) {
 }  // namespace
 
 GustNoise::GustNoise(const GustNoiseSettings& settings)
-    : evolves_(settings.evolves),
+    : settings_(settings),
       ways_along_(make_ways(settings.seed ^ math::stream_id("gusts along the wind"))),
       ways_across_(make_ways(settings.seed ^ math::stream_id("gusts across the wind"))),
       tiles_(make_tiles(settings)),
@@ -195,7 +195,7 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
   carried.way_first.add(way_m, way_periods_m_[0]);
   carried.way_second.add(way_m, way_periods_m_[1]);
 
-  if (!evolves_ || turnover_m23_s == 0.0) return;
+  if (!settings_.evolves || turnover_m23_s == 0.0) return;
   constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
     noise::TorusTravel& turn = carried.eddies.turns[i];
@@ -273,7 +273,7 @@ std::size_t GustNoise::layers(const Moment& moment, std::span<Layer, kMaxLayers>
     const std::size_t torus = torus_of(i);
     Layer& layer = out[count++];
     layer = {.tile = &tiles_[i].first,
-             .quarter = evolves_ ? &tiles_[i].quarter : nullptr,
+             .quarter = settings_.evolves ? &tiles_[i].quarter : nullptr,
              .cosine = carried.eddies.cosine[i],
              .sine = carried.eddies.sine[i],
              .octave = i,

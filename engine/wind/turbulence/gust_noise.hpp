@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/torus.hpp"
 #include "engine/noise/torus_read.hpp"
@@ -71,6 +72,9 @@ class GustNoise {
   /// Throws the errors of make_noise_2d, and std::bad_alloc.
   explicit GustNoise(const GustNoiseSettings& settings);
 
+  /// What it was made of.
+  const GustNoiseSettings& settings() const noexcept { return settings_; }
+
   /// An octave: its waves, and its own part of the power at its wavenumbers (the two chains share it).
   struct Octave {
     double from_rad_m = 0.0;
@@ -93,6 +97,7 @@ class GustNoise {
       cosine.fill(1.0F);
       sine.fill(0.0F);
     }
+    void list_state(StatePass& pass) { pass(turns, cosine, sine); }
   };
 
   /// The tiles' tori: the first chain's long, middle and short one, then the second's.
@@ -109,6 +114,7 @@ class GustNoise {
     std::array<noise::TorusOffset, kTori> tiles;
     noise::TorusTravel way_first, way_second;
     EddyPhases eddies;
+    void list_state(StatePass& pass) { pass(tiles, way_first, way_second, eddies); }
   };
   /// A start position, far from that of another seed.
   Carried begin(std::uint64_t seed) const noexcept;
@@ -133,6 +139,12 @@ class GustNoise {
     std::array<float, kOctaves> along_m_s{}, across_m_s{};
     float gustiness = 0.0F;  ///< variation of the gusts' strength from place to place, by envelope(); 0: uniform
     float fronts = 0.0F;     ///< increase of gusts where longer ones rise, and decrease where they fall; 0: none
+
+    /// All but gustiness and fronts, which never change.
+    void list_state(StatePass& pass) {
+      pass(carried, along_m_s, across_m_s);
+      pass.unit_vector(ahead.u_m_s, ahead.v_m_s);
+    }
   };
   /// The gusts that are the same at all places: the octaves of the way.
   Vector everywhere(const Moment& moment) const noexcept;
@@ -186,13 +198,13 @@ class GustNoise {
   /// A unit vector on the axes of each torus.
   std::array<std::array<float, 2>, kTori> on_axes(Vector unit) const noexcept;
 
+  GustNoiseSettings settings_;
   std::array<double, 2> way_periods_m_;
   std::array<Torus, kTori> tori_;
   std::array<Octave, kOctaves> octaves_{};
   std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};     ///< |k|^(2/3) in the middle of each octave of the tiles
   std::array<float, 2 * kTileOctaves> slope_variances_m_2_{};  ///< of the change of an octave's component along itself
-  bool evolves_;
-  Ways ways_along_, ways_across_;  ///< of both chains
+  Ways ways_along_, ways_across_;                              ///< of both chains
   Tiles tiles_;
   noise::Tile2 strength_;  ///< the envelope's G, on the first torus
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::wind::turbulence {
 
 /// The mean squares of differences between neighbouring means of 1, 2, 4 ... readings, over past readings with a fading
@@ -38,6 +40,12 @@ class HaarSquares {
   /// Their mean square; 0 if there are none, or all are 0.
   double mean(std::size_t scale) const noexcept {
     return weights_[scale] > 0.0 ? squares_[scale] / weights_[scale] : 0.0;
+  }
+
+  void list_state(StatePass& pass) {
+    for (auto* sums : {&squares_, &weights_, &counts_}) {
+      for (double& sum : *sums) pass.within(sum, 0.0, StatePass::kLargestTotal);
+    }
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::wind::turbulence {
@@ -81,6 +82,8 @@ class OctaveFollower {
       return {sum_real, sum_imaginary};
     }
   };
+
+  void list_state(StatePass& pass) { pass(passed_); }
 
  private:
   std::array<Vector, kBands + 1> passed_{};  ///< output of each low pass

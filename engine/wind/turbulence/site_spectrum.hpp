@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::wind::turbulence {
 
 /// The power of gusts at a site relative to the expectation from slow readings, octave by octave of frequency.
@@ -46,6 +48,13 @@ class SiteSpectrum {
   /// The power at a frequency relative to a fit to the readings of a source of this interval (above 0): 1 up to the
   /// frequency that the source resolves, 0.37 over the interval, and for a source of kQuick_s or less.
   double power(double frequency_hz, double interval_s) const noexcept;
+
+  void list_state(StatePass& pass) {
+    for (auto* octaves : {&known_s_, &expected_s_}) {
+      pass.within(std::span<double>(*octaves), 0.0, StatePass::kLargestTotal);
+    }
+    pass(learnt_db_, expected_db_);
+  }
 
  private:
   Seconds known_s_{};

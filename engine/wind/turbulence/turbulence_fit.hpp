@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/reading_value.hpp"
 #include "engine/wind/turbulence/haar_squares.hpp"
 #include "engine/wind/turbulence/wind_component.hpp"
@@ -13,6 +14,11 @@ namespace yuragi::wind::turbulence {
 struct Turbulence {
   double intensity = 0.2;     ///< standard deviation over the mean speed
   double time_scale_s = 8.0;  ///< integral length scale of u over the mean speed, L / U, also of a component across
+
+  void list_state(StatePass& pass) {
+    pass.within(intensity, 0.0, StatePass::kLargest);
+    pass.within(time_scale_s, 1e-6, StatePass::kLargest);
+  }
 };
 
 /// The prior of a fit, which is used if there are few readings.
@@ -67,6 +73,14 @@ class Fit {
 
   /// The measured power relative to von Karman's at a frequency: 1 if nothing is known.
   double correction(double frequency_hz) const noexcept;
+
+  void list_state(StatePass& pass) {
+    pass(squares_, turbulence_);
+    pass.choice(value_, ReadingValue::kUnknown);
+    pass.within(std::span<double>(log_correction_), -100.0, 100.0);
+    pass.within(interval_s_, 1e-9, StatePass::kLargest);
+    pass.index(scales_used_, kScales + 1);
+  }
 
  private:
   double shape(std::size_t scale, double interval_over_time_scale) const noexcept;

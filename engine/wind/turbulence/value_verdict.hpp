@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/reading_value.hpp"
 #include "engine/wind/turbulence/haar_squares.hpp"
 
@@ -38,6 +39,13 @@ class ValueVerdict {
 
   /// The logarithm of the likelihood of the readings as instantaneous values over that as means.
   double log_likelihood_ratio(double interval_s, double speed_m_s) const noexcept;
+
+  void list_state(StatePass& pass) {
+    pass(squares_, interval_s_);
+    pass.total(known_s_);
+    pass.total(judged_s_);
+    pass.choice(verdict_, ReadingValue::kUnknown);
+  }
 
  private:
   void begin(double interval_s) noexcept;

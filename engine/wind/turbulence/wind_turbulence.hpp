@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/state_pass.hpp"
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
 #include "engine/wind/turbulence/value_verdict.hpp"
@@ -48,6 +49,13 @@ class WindTurbulence {
 
   /// ValueVerdict::verdict(); kUnknown if the readings are not judged.
   ReadingValue verdict() const noexcept { return verdict_ ? verdict_->verdict() : ReadingValue::kUnknown; }
+
+  void list_state(StatePass& pass) {
+    pass(along_, across_, sums_);
+    if (verdict_) pass(*verdict_);
+    pass.index(last_, sums_.size());
+    pass.index(history_size_, sums_.size() / 2 + 1);
+  }
 
  private:
   void begin_turn() noexcept;

@@ -5,13 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/snapshot.hpp"
+#include "engine/math/philox.hpp"
 #include "engine/pose/kinematics.hpp"
 #include "engine/pose/pose_hash.hpp"
 #include "engine/scenes/scene.hpp"
-#include "engine/wind/blend/blended_estimator.hpp"
 #include "tests/support/each_simd_row.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/scripted_wind.hpp"
+#include "tests/support/station_wind.hpp"
 
 // Hashes of what each scene does with default parameters and seed 1: every pose, and the joint positions of every 20th.
 // In 600 ticks under the scripted wind, which is the same everywhere (tests/golden/<scene>.txt); and in 300 ticks of
@@ -41,47 +43,6 @@ std::string hash_of(Scene& scene, SimdRow row, std::uint64_t ticks, WindAt wind_
   return text.str();
 }
 
-const std::shared_ptr<const wind::turbulence::GustNoise>& golden_gusts() {
-  static const auto kGusts = std::make_shared<const wind::turbulence::GustNoise>(
-      wind::turbulence::GustNoiseSettings{.samples = 128, .seed = 3, .evolves = true});
-  return kGusts;
-}
-
-/// The wind of a station that reads the scripted wind once a second, as the daemon makes it.
-class StationWind {
- public:
-  explicit StationWind(SimdRow row) : estimator_(1, settings(), golden_gusts()), tapes_(1, row) {}
-
-  wind::ground::Wind at(std::uint64_t tick) {
-    const MonoTime now(from_seconds(static_cast<double>(tick) * kGoldenTick_s));
-    if (tick % 60 == 0) {
-      const wind::Vector wind = scripted_wind(tick);
-      wind::Reading reading;
-      reading.speed_m_s = wind::speed_of(wind);
-      reading.direction_deg = wind::direction_from_deg(wind);
-      reading.time.mono = now;
-      estimator_.accept(0, reading);
-    }
-    wind::ground::DrivingWind driving;
-    driving.state = estimator_.advance(now);
-    driving.ground = estimator_.ground();
-    driving.stroke = estimator_.stroke();
-    driving.ground.tick = tick;
-    return written_to(tapes_, driving);
-  }
-
- private:
-  static wind::blend::Settings settings() {
-    wind::blend::Settings settings;
-    settings.gustiness = 0.3;
-    settings.reach_m = 10.0;
-    return settings;
-  }
-
-  wind::blend::BlendedEstimator estimator_;
-  wind::ground::WindTapes tapes_;
-};
-
 std::string golden_hash(std::string_view scene) {
   std::ifstream file(test::source_path("tests/golden/" + std::string(scene) + ".txt"));
   std::string hash;
@@ -105,12 +66,31 @@ TEST_P(GoldenOnEachRow, EverySceneMovesAsItDidWhenItsHashWasWritten) {
 
 TEST_P(GoldenOnEachRow, EverySceneMovesInAMeasuredWindAsItDidWhenItsHashWasWritten) {
   for (const Description* scene : scene_table()) {
-    const auto made = scene->make(defaults_of(*scene), {.seed = 1, .row = GetParam(), .gusts = golden_gusts()});
+    const auto made = scene->make(defaults_of(*scene), {.seed = 1, .row = GetParam(), .gusts = station_gusts()});
     StationWind wind(GetParam());
     EXPECT_EQ(hash_of(*made, GetParam(), 300, [&](std::uint64_t tick) { return wind.at(tick); }),
               golden_hash("measured/" + std::string(scene->name)))
         << scene->name;
   }
+}
+
+/// A snapshot of another version of the motion is refused: so the version rises when a golden hash does, or what a
+/// scene saves. tests/golden/motion.txt has the version and a hash of both.
+TEST(MotionVersion, RisesWithEveryGoldenHashAndWithWhatSnapshotsHold) {
+  std::string all;
+  for (const Description* kind : scene_table()) {
+    all += golden_hash(kind->name) + " " + golden_hash("measured/" + std::string(kind->name)) + " ";
+    for (const auto& gusts : {std::shared_ptr<const wind::turbulence::GustNoise>(), station_gusts()}) {
+      const auto scene = kind->make(defaults_of(*kind), {.seed = 1, .gusts = gusts});
+      all += std::to_string(save_snapshot(*scene, 0).size()) + " ";
+    }
+  }
+  std::ostringstream now;
+  now << kMotionVersion << " " << std::hex << math::stream_id(all);
+  std::ifstream file(test::source_path("tests/golden/motion.txt"));
+  std::string written;
+  std::getline(file, written);
+  EXPECT_EQ(now.str(), written) << "raise kMotionVersion (engine/base/snapshot.hpp), then write the left to that file";
 }
 
 }  // namespace
