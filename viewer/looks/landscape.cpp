@@ -47,10 +47,13 @@ Landscape::Landscape()
     : noise_(gl::make_noise_texture()),
       relief_(gl::make_relief_texture()),
       ground_(gl::link_program("ground", gl::shaders::kGroundVert, gl::shaders::kGroundFrag)),
+      plain_ground_(gl::link_program("plain ground", gl::shaders::kGroundVert, gl::shaders::kPlainGroundFrag)),
       hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kHillsFrag)),
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
-  GroundMaps::set_samplers(ground_);
-  gl::set_sampler(ground_, "ground_image", gl::kGroundImageUnit);
+  for (const gl::Program* ground : {&ground_, &plain_ground_}) {
+    GroundMaps::set_samplers(*ground);
+    gl::set_sampler(*ground, "ground_image", gl::kGroundImageUnit);
+  }
   gl::set_sampler(sky_, "noise_tile", 0);
   gl::set_sampler(sky_, "moon_spots", 0);
   gl::set_sampler(hills_, "relief_tile", 0);
@@ -111,11 +114,12 @@ void Landscape::draw_far_country(const meshes::View& view) {
 
 void Landscape::draw_ground() {
   glBindVertexArray(no_attributes_.name());
-  glUseProgram(ground_.name());
-  glUniform1i(glGetUniformLocation(ground_.name(), "images"), image_share_ > 0.0F ? 1 : 0);
+  const gl::Program& ground = quality_ == look::Quality::kLow ? plain_ground_ : ground_;
+  glUseProgram(ground.name());
+  glUniform1i(glGetUniformLocation(ground.name(), "images"), image_share_ > 0.0F ? 1 : 0);
   if (image_share_ > 0.0F) {
     const float tall_per_wide = static_cast<float>(image_->height_px) / static_cast<float>(image_->width_px);
-    glUniform2f(glGetUniformLocation(ground_.name(), "image_form"), image_share_, tall_per_wide);
+    glUniform2f(glGetUniformLocation(ground.name(), "image_form"), image_share_, tall_per_wide);
     glActiveTexture(GL_TEXTURE0 + gl::kGroundImageUnit);
     glBindTexture(GL_TEXTURE_2D, image_texture_->name());
     glActiveTexture(GL_TEXTURE0);

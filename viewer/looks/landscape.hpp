@@ -51,6 +51,7 @@ class Landscape {
   gl::Texture noise_, relief_;
   CloudMap clouds_;
   gl::Program ground_;
+  gl::Program plain_ground_;                  // with low quality
   std::shared_ptr<const look::Image> image_;  // on the ground
   std::optional<gl::Texture> image_texture_;
   float image_share_ = 0.0F;

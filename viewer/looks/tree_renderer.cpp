@@ -196,7 +196,11 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
       impostor_px_(impostor_px_of(quality)),
       colors_(colors_of(tree)),
       bark_(gl::link_program("bark", gl::shaders::kBarkVert, gl::shaders::kBarkFrag)),
-      leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
+      leaf_(quality == look::Quality::kLow
+                ? gl::link_program("plain leaf", gl::shaders::kPlainLeafVert, gl::shaders::kShadeFrag)
+                : gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
+      bark_shade_(gl::link_program("bark's shadow", gl::shaders::kBarkVert, gl::shaders::kDimFrag)),
+      leaf_shade_(gl::link_program("leaf's shadow", gl::shaders::kLeafShadeVert, gl::shaders::kShadeFrag)),
       contact_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
   for (std::size_t i = 0; i < tree.levels.size(); ++i) {
     if (tree.levels[i].is_leaves) {
@@ -214,7 +218,7 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
            tube_triangles(tree.levels[i].strands.links_per_strand, meshes::trees::Branches::kSides.at(tube)));
     }
   }
-  gl::set_sampler(bark_, "joints", 0);
+  for (const gl::Program* bark : {&bark_, &bark_shade_}) gl::set_sampler(*bark, "joints", 0);
   for (const meshes::trees::Place& place : places_of(tree)) add_place(place);
   box_ = meshes::trees::impostor_box(bounds_without_grove(tree));
   far_trees_.reserve(1 + tree.copies.x_m.size());
@@ -393,6 +397,7 @@ void TreeRenderer::draw_shadow(const meshes::View& view) {
 
 void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::SprayDetail& detail, float ring_px,
                             bool is_shadow) {
+  const Programs programs{is_shadow ? bark_shade_ : bark_, is_shadow ? leaf_shade_ : leaf_, colors_};
   const auto planes = side_planes(view);
   const float radius_m = std::hypot(box_.half_width_m, box_.half_height_m);
   // Gusts reach the tree that is farthest upwind first.
@@ -408,7 +413,7 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::Spray
     for (const meshes::trees::Place& place : alike->places) {
       const float share = impostors_ ? impostor_share(view, place) : 0.0F;
       const float hanging = loses_leaves(*tree_) ? hanging_of(place.chance(), moment_.hanging_leaves) : 1.0F;
-      if (share < 1.0F) draw_tree({bark_, leaf_, colors_}, view, detail, ring_px, *alike, place, hanging);
+      if (share < 1.0F) draw_tree(programs, view, detail, ring_px, *alike, place, hanging);
       const glm::vec4 middle_m(place.moved(box_.middle_m), 1.0F);
       const bool is_seen = std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
         return glm::dot(plane, middle_m) >= -1.2F * place.scale * radius_m;

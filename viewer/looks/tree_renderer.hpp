@@ -108,6 +108,8 @@ class TreeRenderer : public SceneRenderer {
   LeafColors colors_;
   gl::Program bark_;
   gl::Program leaf_;
+  gl::Program bark_shade_;  // for the map of shadows
+  gl::Program leaf_shade_;
   gl::Program contact_;
   std::vector<std::unique_ptr<Alike>> trees_;  // the streamed one is the first of the first
   Moment moment_;
