@@ -7,6 +7,9 @@ import path from "node:path";
 
 export const HANG_MS = 120_000; // reached only by what hangs
 
+/** Where a machine is too busy to open a WebSocket in time, the page gives it up, and requests the state instead. */
+const TOO_BUSY = /WebSocket is closed before the connection is established/;
+
 /** `tools`: the folder with playwright-core; `programs`: that of ours. */
 export async function begin({ chromiumPath, programs, tools }) {
   const { chromium } = createRequire(path.join(tools, "package.json"))("playwright-core");
@@ -57,7 +60,9 @@ export async function begin({ chromiumPath, programs, tools }) {
       const page = await context.newPage();
       page.setDefaultTimeout(HANG_MS);
       page.complaints = [];
-      page.on("console", (message) => page.complaints.push(message.text()));
+      page.on("console", (message) => {
+        if (!TOO_BUSY.test(message.text())) page.complaints.push(message.text());
+      });
       page.on("pageerror", (error) => page.complaints.push(error.message));
       page.on("request", (request) => {
         if (!request.url().startsWith(new URL(url).origin)) page.complaints.push("asks for " + request.url());
