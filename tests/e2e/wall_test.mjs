@@ -14,6 +14,7 @@ const [httpPort, streamPort, sensorPort, livePort] = ports;
     machine takes from the desktop's picture to the browser's, the more (garden 40 to 50 dB, cherry 48 to 67). */
 const LEAST_DB = { garden: 36, meadow: 45, cherry: 36 };
 const TEST_MS = 10 * HANG_MS;
+const REDUCED = /%/; // a pace at which less is drawn
 const STILL_AIR = `
 [wind]
 default_speed = 0.0
@@ -102,10 +103,16 @@ test("its picture is the desktop viewer's", { timeout: TEST_MS }, async () => {
     const args = ["--camera", CAMERA, "--look", `quality=${quality}`, ...Object.values(scene).flatMap((one) => ["--scene", one])];
     const query = new URLSearchParams({ camera: CAMERA, look: `quality=${quality}`, words: "0", ...scene });
     const desktop = [desktopPicture(`${name}-desktop`, args), desktopPicture(`${name}-desktop-again`, args)];
-    const page = await world.open(`${url}?${query}`);
-    await waitForPictures(page);
     const file = path.join(screenshots, `${name}-browser.png`);
-    await page.screenshot({ path: file });
+    let page = await world.open(`${url}?${query}`);
+    // On a busy machine it soon draws fewer pixels; begun again it first draws all of them.
+    for (let pictures = 3; ; pictures = 1) {
+      await waitForPictures(page, pictures);
+      await page.screenshot({ path: file });
+      if (!REDUCED.test(await page.evaluate(() => window.wall.pace))) break;
+      await page.context().close();
+      page = await world.open(`${url}?${query}`);
+    }
     const apart = await psnr(...desktop);
     const here = await psnr(desktop[0], file);
     console.log(`${name}: desktop against desktop ${apart.toFixed(1)} dB, against browser ${here.toFixed(1)} dB`);
