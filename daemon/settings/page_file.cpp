@@ -130,19 +130,66 @@ std::string name_of(const toml::table& entry) {
   return entry["name"].value<std::string>().value_or(entry["driver"].value_or(std::string()));
 }
 
+// The lists of the file.
+constexpr const char* kSensors = "sensor";
 constexpr const char* kCalibrations = "calibration";
+// Of a calibration:
 constexpr const char* kCalibrated = "sensor";
 constexpr const char* kReplaced = "replaces";
 
-/// The list of sensors; null: there is none.
-const toml::array* list_in(const toml::table& root) {
-  return root["sensor"].as_array();
+std::string calibrated_by(const toml::table& entry) {
+  return entry[kCalibrated].value_or(std::string());
 }
 
 std::string written(const toml::table& root) {
   std::ostringstream out;
   out << kHead << '\n' << root << '\n';
   return out.str();
+}
+
+/// What `use` makes of the page's text as a table; fails if it is not TOML.
+template <class Use>
+auto of_page(std::string_view page_text, const Use& use)
+    -> Result<decltype(use(std::declval<toml::table&>())), Failure> {
+  try {
+    toml::table root = tables::parse_toml(page_text);
+    return {boost::system::in_place_value, use(root)};
+  } catch (const toml::parse_error&) {
+    return not_toml();
+  }
+}
+
+/// The names of a list's entries, in order; `name_in`: that of one.
+Result<std::vector<std::string>, Failure> names_in(std::string_view page_text, const char* list,
+                                                   std::string (*name_in)(const toml::table&)) {
+  return of_page(page_text, [&](toml::table& root) {
+    std::vector<std::string> names;
+    const toml::array* const entries = root[list].as_array();
+    for (std::size_t i = 0; entries != nullptr && i < entries->size(); ++i) {
+      if (const toml::table* const entry = entries->get(i)->as_table()) names.push_back(name_in(*entry));
+    }
+    return names;
+  });
+}
+
+/// The page's text without the first entry of a list that has this name; fails with `missing` if there is none.
+Result<std::string, Failure> without_entry(std::string_view page_text, const char* list,
+                                           std::string (*name_in)(const toml::table&), std::string_view name,
+                                           const Failure& missing) {
+  const auto text = of_page(page_text, [&](toml::table& root) -> std::optional<std::string> {
+    toml::array* const entries = root[list].as_array();
+    for (std::size_t i = 0; entries != nullptr && i < entries->size(); ++i) {
+      const toml::table* const entry = entries->get(i)->as_table();
+      if (entry == nullptr || name_in(*entry) != name) continue;
+      entries->erase(entries->begin() + static_cast<std::ptrdiff_t>(i));
+      if (entries->empty()) root.erase(list);
+      return written(root);
+    }
+    return std::nullopt;
+  });
+  if (!text) return text.error();
+  if (!*text) return missing;
+  return {boost::system::in_place_value, **text};
 }
 
 /// The first table of a list for which `is_it` holds; null: there is none.
@@ -166,8 +213,8 @@ void put(toml::table& table, std::string_view key, const ParameterValue& value) 
 toml::table& calibration_of_configured(toml::table& root, const SensorConfig& sensor) {
   toml::table replaced;
   for (const auto& [key, value] : replaced_by_page(sensor)) put(replaced, key, value);
-  toml::table* table = table_in(root, kCalibrations,
-                                [&](const toml::table& one) { return one[kCalibrated].value_or("") == sensor.name; });
+  toml::table* table =
+      table_in(root, kCalibrations, [&](const toml::table& one) { return calibrated_by(one) == sensor.name; });
   if (table != nullptr) {
     const toml::table* const before = (*table)[kReplaced].as_table();
     if (before != nullptr && *before == replaced) return *table;
@@ -402,20 +449,8 @@ std::string with_sensor(std::string_view page_text, const PageSensor& sensor) {
 }
 
 Result<std::string, Failure> without_sensor(std::string_view page_text, std::string_view name) {
-  try {
-    toml::table root = tables::parse_toml(page_text);
-    toml::array* const list = root["sensor"].as_array();
-    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
-      const toml::table* const entry = list->get(i)->as_table();
-      if (entry == nullptr || name_of(*entry) != name) continue;
-      list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
-      if (list->empty()) root.erase("sensor");
-      return {boost::system::in_place_value, written(root)};
-    }
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
-  return Failure{fmt::format("the page has set up no sensor \"{}\"", name), FailureKind::kNoInput};
+  return without_entry(page_text, kSensors, name_of, name,
+                       {fmt::format("the page has set up no sensor \"{}\"", name), FailureKind::kNoInput});
 }
 
 std::span<const Parameter> page_calibration_keys() {
@@ -444,7 +479,7 @@ Result<std::string, Failure> with_calibration(std::string_view page_text, const 
                                               std::span<const ConfigChange> changes) {
   try {
     toml::table root = tables::parse_toml(page_text);
-    toml::table* table = table_in(root, "sensor", [&](const toml::table& one) { return name_of(one) == sensor; });
+    toml::table* table = table_in(root, kSensors, [&](const toml::table& one) { return name_of(one) == sensor; });
     if (table != nullptr) {
       table->insert(kCalibrationTable, toml::table());
       table = (*table)[kCalibrationTable].as_table();
@@ -463,95 +498,53 @@ Result<std::string, Failure> with_calibration(std::string_view page_text, const 
 }
 
 Result<std::string, Failure> without_calibration(std::string_view page_text, std::string_view sensor) {
-  try {
-    toml::table root = tables::parse_toml(page_text);
-    toml::array* const list = root[kCalibrations].as_array();
-    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
-      const toml::table* const entry = list->get(i)->as_table();
-      if (entry == nullptr || (*entry)[kCalibrated].value_or("") != sensor) continue;
-      list->erase(list->begin() + static_cast<std::ptrdiff_t>(i));
-      if (list->empty()) root.erase(kCalibrations);
-      return {boost::system::in_place_value, written(root)};
-    }
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
-  return Failure{fmt::format("the page has no calibration of \"{}\"", sensor), FailureKind::kNoInput};
+  return without_entry(page_text, kCalibrations, calibrated_by, sensor,
+                       {fmt::format("the page has no calibration of \"{}\"", sensor), FailureKind::kNoInput});
 }
 
 Result<std::vector<std::string>, Failure> calibrations_in(std::string_view page_text) {
-  try {
-    std::vector<std::string> names;
-    toml::table root = tables::parse_toml(page_text);
-    table_in(root, kCalibrations, [&names](const toml::table& one) {
-      names.push_back(one[kCalibrated].value_or(std::string()));
-      return false;
-    });
-    return names;
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
+  return names_in(page_text, kCalibrations, calibrated_by);
 }
 
 Result<std::vector<std::string>, Failure> sensors_in(std::string_view page_text) {
-  try {
-    std::vector<std::string> names;
-    const toml::table root = tables::parse_toml(page_text);
-    if (const toml::array* const list = list_in(root)) {
-      for (const toml::node& each : *list) {
-        if (const toml::table* const entry = each.as_table()) names.push_back(name_of(*entry));
-      }
-    }
-    return names;
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
+  return names_in(page_text, kSensors, name_of);
 }
 
 Result<std::string, Failure> with_values(std::string_view page_text, std::span<const ParameterEdit> values,
                                          const Config& edited) {
-  try {
-    toml::table root = tables::parse_toml(page_text);
+  return of_page(page_text, [&](toml::table& root) {
     for (const ParameterEdit& edit : values) {
       const ParameterValue* const value = value_in(edited, edit);
       if (value == nullptr) continue;
       toml::table& table = table_for(root, edit.scene);
       std::visit([&](const auto& plain) { table.insert_or_assign(edit.key, plain); }, printable(*value));
     }
-    return {boost::system::in_place_value, written(root)};
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
+    return written(root);
+  });
 }
 
 Result<std::string, Failure> without_values(std::string_view page_text) {
-  try {
-    toml::table root = tables::parse_toml(page_text);
+  return of_page(page_text, [](toml::table& root) {
     root.erase("look");
     root.erase("scene");
-    return {boost::system::in_place_value, written(root)};
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
+    return written(root);
+  });
 }
 
 Result<std::vector<std::string>, Failure> kept_in(std::string_view page_text) {
-  try {
+  return of_page(page_text, [](const toml::table& root) {
     std::vector<std::string> passed_over;
     std::vector<std::string> names;
-    for (const KeptValue& value : KeptReader("", passed_over).read(tables::parse_toml(page_text)))
-      names.push_back(name_of(value.edit));
+    for (const KeptValue& value : KeptReader("", passed_over).read(root)) names.push_back(name_of(value.edit));
     return names;
-  } catch (const toml::parse_error&) {
-    return not_toml();
-  }
+  });
 }
 
 bool have_same_sensors(std::string_view page_text, std::string_view other) {
   try {
     const toml::table one = tables::parse_toml(page_text);
     const toml::table another = tables::parse_toml(other);
-    return std::ranges::all_of(std::array{"sensor", kCalibrations}, [&](const char* list) {
+    return std::ranges::all_of(std::array{kSensors, kCalibrations}, [&](const char* list) {
       const toml::array* const tables = one[list].as_array();
       const toml::array* const others = another[list].as_array();
       return tables == nullptr || others == nullptr ? tables == others : *tables == *others;

@@ -7,7 +7,7 @@ import path from "node:path";
 
 export const HANG_MS = 120_000; // reached only by what hangs
 
-/** Where a machine is too busy to open a WebSocket in time, the page gives it up, and requests the state instead. */
+/** On a machine that is too busy to open a WebSocket in time, the page gives it up and requests the state instead. */
 const TOO_BUSY = /WebSocket is closed before the connection is established/;
 
 /** `tools`: the folder with playwright-core; `programs`: that of ours. */

@@ -1,11 +1,11 @@
-"""A network between a program and its server that delays what the server says."""
+"""A network between a program and its server that delays the server's bytes."""
 import socket
 import threading
 import time
 
 
 class SlowNetwork:
-    """Passes a TCP connection on, and what the server says later by what delay_s() answers for each block of bytes. In order: a
+    """Passes a TCP connection on, and delays each block of the server's bytes by delay_s(). In order: a
     late block holds up those behind it."""
 
     def __init__(self, to, delay_s):

@@ -82,7 +82,7 @@ export class LookView {
     }
   }
 
-  /** What is kept is shown to those who may change it only. */
+  /** Only those who may change the kept values are shown them. */
   private async load_kept(): Promise<void> {
     try {
       const { kept, can_undo } = await ask<Kept>(KEPT_PATH);

@@ -231,7 +231,7 @@ export interface CalibratedSensor {
 
 type CalibrationValues = Record<string, number | string>;
 
-/** What `yuragi calibrate --json` prints; null: not yet known, or nothing to change. */
+/** A line of `yuragi calibrate --json`. Null: not yet known, or there is nothing to change. */
 export interface CalibrationState {
   duration_s: number;
   elapsed_s: number | null;
@@ -243,7 +243,7 @@ export interface CalibrationState {
   effect: { indicated_unit: string; unit: string; rows: { indicated: number; now: number; then: number }[] } | null;
 }
 
-/** What was set up on the page, and the sensors of the configuration that it has calibrated. */
+/** The sensors that were set up on the page, and those of the configuration that were calibrated there. */
 export interface SetUp {
   sensors: string[];
   calibrated: string[];
