@@ -76,10 +76,12 @@ unpack() {
   local to=build/$1 folder
   [ ! -d "$to" ] || return 0
   folder=$(mktemp -d)
+  mkdir -p build
   if (cd "$folder" && apt-get download -q "$1" >/dev/null 2>&1) && dpkg -x "$folder"/*.deb "$to"; then
     echo "setup: the tests have $1 in $to."
   else
-    echo "setup: apt could not download $1: the tests that need it will be skipped."
+    rm -rf "$to"
+    echo "setup: $1 could not be downloaded or unpacked: the tests that need it will be skipped."
   fi
   rm -rf "$folder"
 }

@@ -71,6 +71,12 @@ void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::ui
   sharing_.took(all_scenes);
 }
 
+void Animation::list_state(StatePass& pass) {
+  assert(!change_);
+  pass(tapes_, view_wind_, tick_);
+  for (std::size_t i = 0; i < scenes_->size(); ++i) pass((*scenes_)[i]);
+}
+
 void Animation::cue(const SceneCue& cue) noexcept {
   const SceneRoster& roster = change_ ? *change_->roster : *scenes_->roster();
   if (cue.scene >= roster.scenes.size()) return;

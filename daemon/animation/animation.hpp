@@ -46,6 +46,11 @@ class Animation {
   /// it.
   void cue(const SceneCue& cue) noexcept;
 
+  /// Of all scenes and of the wind over the ground, for a snapshot (engine/base/snapshot.hpp). Not while a change is
+  /// carried out (is_changing()). Not realtime-safe.
+  void list_state(StatePass& pass);
+  bool is_changing() const noexcept { return change_ != nullptr; }
+
   /// Begins to exchange the scenes, of which the change was made. Not while another change is carried out.
   void begin_change(std::unique_ptr<SceneChange> change) noexcept;
   /// Returns the completed change, with the objects to free; null if there is none.

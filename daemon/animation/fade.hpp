@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/state_pass.hpp"
+
 namespace yuragi::daemon::animation {
 
 /// The opacity of a scene, from 0 (hidden) to 1, and its fade between them: the smooth step 3 s^2 - 2 s^3, whose rate
@@ -26,6 +28,11 @@ class Fade {
   bool is_shown() const noexcept { return to_ > 0.5; }
 
   float opacity() const noexcept { return static_cast<float>(value()); }
+
+  void list_state(StatePass& pass) {
+    for (double* part : {&from_, &to_}) pass.within(*part, 0.0, 1.0);
+    for (double* time_s : {&over_s_, &since_s_}) pass.within(*time_s, 0.0, StatePass::kLargest);
+  }
 
  private:
   double value() const noexcept {

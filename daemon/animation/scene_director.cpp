@@ -30,6 +30,10 @@ void SceneDirector::follow(const SceneRoster& roster) {
   }
 }
 
+void SceneDirector::resume(const SceneRoster& roster) {
+  for (std::size_t i = 0; i < scenes_.size(); ++i) scenes_[i].shown = roster.scenes.at(i)->fade.is_shown();
+}
+
 wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_local) {
   return carry_out(control, settings::control_refusal(allowed_, is_local, "scenes cannot be switched"));
 }

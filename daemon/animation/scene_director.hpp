@@ -26,6 +26,9 @@ class SceneDirector {
   /// the configuration's `shown` of it has changed (SceneChange).
   void follow(const SceneRoster& roster);
 
+  /// What the animation shows and hides is what was shown and hidden here, after its state was loaded.
+  void resume(const SceneRoster& roster);
+
   /// Changes who may switch scenes.
   void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
 

@@ -22,6 +22,8 @@ struct StagedScene {
   Fade fade{false};
   double wind_gain = 1.0;
   RunningMean step_time;  ///< of its part of a tick; 0 while it is hidden
+
+  void list_state(StatePass& pass) { pass(fade, *scene); }
 };
 
 /// The scenes of a configuration, and what they were made from. Never changes, so that several threads may share it.

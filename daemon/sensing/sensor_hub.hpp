@@ -69,6 +69,10 @@ class SensorHub {
   const wind::ground::Wind& ground() const noexcept { return estimator_.ground(); }
   const wind::ground::WindStroke& stroke() const noexcept { return estimator_.stroke(); }
 
+  /// Of the wind that is made of the readings, for a snapshot (engine/base/snapshot.hpp). What is known of each sensor
+  /// is left out: it is soon known again.
+  void list_state(StatePass& pass) { pass(estimator_, wind_); }
+
   /// What is known of the site's gusts; updated while a fast sensor of the site is live. Belongs to this thread.
   const std::shared_ptr<wind::turbulence::SiteSpectrum>& site() const noexcept { return site_; }
 

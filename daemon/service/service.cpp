@@ -40,6 +40,7 @@
 #include "daemon/service/parameter_director.hpp"
 #include "daemon/service/reload.hpp"
 #include "daemon/service/reload_report.hpp"
+#include "daemon/service/resumption.hpp"
 #include "daemon/service/service_manager.hpp"
 #include "daemon/settings/config_file.hpp"
 #include "daemon/settings/page_file.hpp"
@@ -154,6 +155,7 @@ class Service::Io {
         hand_(config.stream.control, names_of(cameras_)),
         control_(config.stream.control),
         reload_(config, reload_parts(config)),
+        resumption_(motion_file(config, options)),
         parameters_(reload_, animation_ ? &director_ : nullptr, config.stream.control,
                     static_cast<std::uint64_t>(started_.utc.time_since_epoch().count())) {
     if (animation_) {
@@ -216,6 +218,7 @@ class Service::Io {
         if (!error) end("the duration has elapsed");
       });
     }
+    resume();
     next_wind_ = asio::steady_timer::clock_type::now();
     step_wind();
     send_status();
@@ -317,6 +320,19 @@ class Service::Io {
   std::filesystem::path pairings_file() const {
     if (!takes_token_ || options_.recorded_from) return {};
     return settings::state_file(options_.config_file, "pairings.json");
+  }
+
+  /// A recording that plays begins at rest: what it shows follows from the recording alone.
+  static std::filesystem::path motion_file(const settings::Config& config, const Options& options) {
+    const bool plays =
+        std::ranges::any_of(config.sensors, [](const auto& sensor) { return sensor.driver->plays_recordings; });
+    if (!config.animation.resumes || plays || options.recorded_from) return {};
+    return settings::motion_file();
+  }
+  Motion motion() { return {hub_, shaper_, *animation_}; }
+  void resume() {
+    if (!animation_ || !resumption_.load(reload_.running(), motion(), clock_.now().mono)) return;
+    director_.resume(*animation_->roster());
   }
 
   /// Reads what the daemon records itself; it owns all that it uses.
@@ -748,6 +764,7 @@ class Service::Io {
     spdlog::info("ending: {}", why);
     if (!is_restart_) manager_.report_stopping(why);
     if (loop_) loop_->stop();
+    if (animation_ && !failure_) resumption_.save(reload_.running(), motion());
     stream_.close();
     if (web_) web_->close();
     feeds_.reset();
@@ -821,6 +838,7 @@ class Service::Io {
 
   settings::ControlPermission control_;
   Reload reload_;  ///< it uses all of the above
+  Resumption resumption_;
   ParameterDirector parameters_;
 };
 

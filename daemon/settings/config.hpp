@@ -40,6 +40,7 @@ inline constexpr std::size_t kMaxScenes = 64;
 struct AnimationConfig {
   double rate_hz = 0.0;     ///< ticks per second, of the wind and of the scenes
   std::size_t threads = 1;  ///< that share the work of a tick
+  bool resumes = true;      ///< goes on with the motion of the run before
 };
 
 /// A [[camera]].

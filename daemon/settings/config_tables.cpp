@@ -31,6 +31,11 @@ const Fields<AnimationConfig>& animation_fields() {
         .max = 64,
         .help = "threads that share a tick; more than one helps from about a million nodes on"},
        &AnimationConfig::threads},
+      {{.name = "resume",
+        .default_value = true,
+        .help = "a daemon that is started again goes on with the motion with which it ended, for 10 minutes; false: it "
+                "begins at rest"},
+       &AnimationConfig::resumes},
   };
   return kFields;
 }

@@ -48,6 +48,9 @@ class WindShaper {
   /// (WindShaping::change). The site file stays as it was.
   void change(const settings::ShapingConfig& shaping);
 
+  /// For a snapshot (engine/base/snapshot.hpp).
+  void list_state(StatePass& pass) { pass(shaping_); }
+
   /// Changes the real wind into the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
   /// `is_any_live`: a sensor is live. Otherwise (the fall-back recording plays) nothing is learnt of the site.
   /// `by_hand`: what people have set at this moment.

@@ -174,8 +174,10 @@ struct Archive::Shared {
       case What::kSensors:
         return setup().list();
       case What::kFindSensors:
-        return started(
-            {.kind = "find", .command = command({"sensors", "list", "--all", "--json"}), .time = kMaxSearch});
+        return started({.kind = "find",
+                        .command = command({"sensors", "list", "--all", "--json"}),
+                        .niceness = Niceness::kAwaited,
+                        .time = kMaxSearch});
       case What::kTrySensor:
         return try_sensor(request.sensor);
       case What::kAddSensor:
@@ -323,7 +325,8 @@ struct Archive::Shared {
 
   http::Response drivers() {
     if (known_drivers.empty()) {
-      const ChildOutput output = run_niced(command({"sensors", "describe", "--json"}), kMaxCheck, stop.get_token());
+      const ChildOutput output =
+          run_niced(Niceness::kAwaited, command({"sensors", "describe", "--json"}), kMaxCheck, stop.get_token());
       if (std::string failure = failure_of(output); !failure.empty()) return busy(failure);
       known_drivers = for_the_page(output.printed);
     }
@@ -336,6 +339,7 @@ struct Archive::Shared {
     return started({.kind = "try",
                     .command = command({"sensors", "try", "-", "--json"}),
                     .input = std::move(*text),
+                    .niceness = Niceness::kAwaited,
                     .shows_progress = true,
                     .time = kMaxTrial});
   }
@@ -343,9 +347,9 @@ struct Archive::Shared {
   http::Response calibrations() const {
     if (settings.configuration.empty())
       return problem(404, "No file", "the daemon runs without a configuration file: nothing can be calibrated");
-    const ChildOutput output =
-        run_niced(command({"calibrate", "list", "--config", settings.configuration.string(), "--json"}), kMaxCheck,
-                  stop.get_token());
+    const ChildOutput output = run_niced(
+        Niceness::kAwaited, command({"calibrate", "list", "--config", settings.configuration.string(), "--json"}),
+        kMaxCheck, stop.get_token());
     if (std::string failure = failure_of(output); !failure.empty()) return busy(failure);
     auto sensors = ordered_json::parse(output.printed, nullptr, false);
     return json_response({{"sensors", sensors.is_discarded() ? ordered_json::array() : std::move(sensors)}});
@@ -353,7 +357,8 @@ struct Archive::Shared {
 
   http::Response calibrate(const std::string& sensor, const CalibrationOrder& wanted) {
     if (auto refusal = setup().calibration_refusal(sensor, wanted.reference)) return std::move(*refusal);
-    JobOrder order{.kind = "calibrate", .command = command({"calibrate"}), .shows_progress = true};
+    JobOrder order{
+        .kind = "calibrate", .command = command({"calibrate"}), .niceness = Niceness::kAwaited, .shows_progress = true};
     for (std::string& word : words_of(wanted, sensor)) order.command.push_back(std::move(word));
     order.command.push_back("--config=" + settings.configuration.string());
     if (!settings.stream.empty()) order.command.push_back("--connect=" + settings.stream);
@@ -365,8 +370,9 @@ struct Archive::Shared {
   http::Response configuration() const {
     if (settings.configuration.empty())
       return problem(404, "No file", "the daemon runs without a configuration file; `yuragi describe` lists all keys");
-    const ChildOutput output = run_niced(command({"check-config", settings.configuration.string(), "--full", "--json"}),
-                                         kMaxCheck, stop.get_token());
+    const ChildOutput output =
+        run_niced(Niceness::kAwaited, command({"check-config", settings.configuration.string(), "--full", "--json"}),
+                  kMaxCheck, stop.get_token());
     if (!output.end || output.end->signal != 0) return busy("the configuration was not read: " + failure_of(output));
     auto values = ordered_json::parse(output.printed, nullptr, false);
     ordered_json findings = ordered_json::array();

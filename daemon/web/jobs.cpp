@@ -16,7 +16,6 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include "daemon/web/niced_child.hpp"
 #include "engine/base/contain.hpp"
 
 namespace yuragi::daemon::web {
@@ -80,7 +79,7 @@ Outcome carry_out(const JobOrder& order, const std::stop_token& stop,
     folder.emplace(order.folder);
     command.push_back((folder->path() / order.result).string());
   }
-  ChildOutput output = run_niced(std::move(command), order.time, stop, order.input, look);
+  ChildOutput output = run_niced(order.niceness, std::move(command), order.time, stop, order.input, look);
   const bool has_finding = order.is_finding_good && output.end && output.end->shell_code() == kFinding;
   if (std::string failure = failure_of(output); !failure.empty() && !has_finding)
     return {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/web/niced_child.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 #include "engine/platform/descriptor.hpp"
@@ -21,7 +22,8 @@ struct JobOrder {
   std::string recording = {};             ///< its name; empty: it is about none
   std::vector<std::string> command = {};  ///< without the file that it writes
   std::string input = {};                 ///< what it reads
-  bool shows_progress = false;            ///< Job::printed is what it has printed so far
+  Niceness niceness = Niceness::kLowest;
+  bool shows_progress = false;        ///< Job::printed is what it has printed so far
   std::string result = {};            ///< the name of that file, which is appended to `command`; empty: what it prints
   std::string content_type = {};      ///< of that file
   std::filesystem::path folder = {};  ///< where it is made, and removed with all that is in it; empty: a temporary one
@@ -47,7 +49,7 @@ struct Job {
   Nanoseconds run_for{0};
 };
 
-/// Carries out one order at a time, as a child process at the lowest priority that ends with the daemon, and keeps what
+/// Carries out one order at a time, as a niced child process that ends with the daemon, and keeps what
 /// came of the last ones. Thread-safe: yes. Nothing waits for the child but a thread of its own.
 class Jobs {
  public:

@@ -20,7 +20,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int kMinPriority = 19;
+constexpr int kAwaited_nice = 5;
+constexpr int kLowest_nice = 19;
 constexpr int kBetweenLooks_ms = 100;
 // ioprio_set(2), which has no header of its own: of this thread, in the class that gets the disk when nobody else wants
 // it.
@@ -28,9 +29,10 @@ constexpr int kOfThisThread = 1;
 constexpr int kIdleClass = 3 << 13;
 
 /// Children inherit it. What the system does not permit is left out.
-void lower_priority() noexcept {
-  setpriority(PRIO_PROCESS, 0, kMinPriority);  // of this thread alone, on Linux
-  syscall(SYS_ioprio_set, kOfThisThread, 0, kIdleClass);
+void lower_priority(Niceness niceness) noexcept {
+  const bool is_lowest = niceness == Niceness::kLowest;
+  setpriority(PRIO_PROCESS, 0, is_lowest ? kLowest_nice : kAwaited_nice);  // of this thread alone, on Linux
+  if (is_lowest) syscall(SYS_ioprio_set, kOfThisThread, 0, kIdleClass);
 }
 
 /// A file in memory that vanishes with its descriptor.
@@ -65,9 +67,10 @@ class MemoryFile {
 
 }  // namespace
 
-ChildOutput run_niced(std::vector<std::string> command, Nanoseconds time, const std::stop_token& stop,
-                      const std::string& input, const std::function<void(const std::string&)>& look) {
-  lower_priority();
+ChildOutput run_niced(Niceness niceness, std::vector<std::string> command, Nanoseconds time,
+                      const std::stop_token& stop, const std::string& input,
+                      const std::function<void(const std::string&)>& look) {
+  lower_priority(niceness);
   const auto deadline = steady_clock::now() + time;
   const MemoryFile printed("printed");
   const MemoryFile complaints("complaints");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <stop_token>
@@ -24,12 +25,19 @@ struct ChildOutput {
 inline constexpr std::size_t kMaxPrinted_bytes = 1UL << 20;
 inline constexpr std::size_t kMaxComplaints_bytes = 4096;
 
-/// Runs a program at the lowest priority of processor and disk, which is the calling thread's from then on, and waits
-/// for its end. It is killed, with the programs that it started, after `time`, when `stop` is requested, and with the
+/// How far a child stands back from the animation.
+enum class Niceness : std::uint8_t {
+  kAwaited,  ///< short work, whose answer somebody waits for: behind the animation, before all that is idle
+  kLowest,   ///< work of minutes: what processor and disk have left
+};
+
+/// Runs a program behind the animation, at a priority that is the calling thread's from then on, and waits for its end.
+/// It is killed, with the programs that it started, after `time`, when `stop` is requested, and with the
 /// calling thread. Throws std::system_error if it cannot be started.
 /// `input`: what it reads; `look`: gets what it has printed so far, whenever that is more.
-ChildOutput run_niced(std::vector<std::string> command, Nanoseconds time, const std::stop_token& stop,
-                      const std::string& input = {}, const std::function<void(const std::string&)>& look = {});
+ChildOutput run_niced(Niceness niceness, std::vector<std::string> command, Nanoseconds time,
+                      const std::stop_token& stop, const std::string& input = {},
+                      const std::function<void(const std::string&)>& look = {});
 
 /// What went wrong, for a person: its last complaint, or how it ended. Empty if its exit code is 0. Pure.
 std::string failure_of(const ChildOutput& output);

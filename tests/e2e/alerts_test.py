@@ -13,6 +13,7 @@ import socket
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 from programs import HANG_S, Program, free_port
@@ -125,6 +126,10 @@ command = 'ls -l /proc/self/fd > {self.told}; echo done'
                 # It is accepted once it is answered.
                 browser.sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
                 self.assertTrue(browser.recv(1))
+                # The standard library reads and writes a small file without O_CLOEXEC: no child has it, and it is closed at once.
+                deadline = time.monotonic() + HANG_S
+                while inherited(daemon.process.pid) and time.monotonic() < deadline:
+                    time.sleep(0.01)
                 self.assertEqual(inherited(daemon.process.pid), [])
                 roof.end(signal.SIGKILL)
                 # It began before the sensor was connected, ended, and began again.

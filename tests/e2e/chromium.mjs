@@ -54,9 +54,9 @@ export async function begin({ chromiumPath, programs, tools }) {
       running.delete(child);
     },
 
-    /** A page, and all that it writes on its console or asks of others. */
+    /** A page, and all that it writes on its console or asks of others. Without motion, which the processor would draw. */
     async open(url, options = {}) {
-      const context = await browser.newContext({ viewport: { width: 320, height: 180 }, ...options });
+      const context = await browser.newContext({ viewport: { width: 320, height: 180 }, reducedMotion: "reduce", ...options });
       const page = await context.newPage();
       page.setDefaultTimeout(HANG_MS);
       page.complaints = [];

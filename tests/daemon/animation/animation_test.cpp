@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/snapshot.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/pose_hash.hpp"
 #include "tests/support/gusty_wind.hpp"
@@ -99,6 +100,26 @@ TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
   EXPECT_TRUE(std::get<pose::StrandPose>(frame.poses[1]).bend_east_rad.empty());
   EXPECT_LT(bytes, animation.largest_frame_bytes() * 2 / 3);
   EXPECT_TRUE(wire::fits(frame, animation.describe()));
+}
+
+TEST(AnimationTest, OneThatIsLoadedGoesOnWithTheFramesOfTheOneThatWasSaved) {
+  const auto wind_at = [](int tick) { return everywhere({5.0 + 3.0 * std::sin(0.1 * tick), std::cos(0.03 * tick)}); };
+  const settings::Config config = installation("", "shown = false");
+  Animation saved = animation_of(config);
+  for (int tick = 0; tick < 60; ++tick) saved.step(wind_at(tick), kTick_s);
+  saved.cue({.scene = 1, .shown = true, .over_s = 2.0});
+  for (int tick = 60; tick < 120; ++tick) saved.step(wind_at(tick), kTick_s);
+  const std::vector<std::uint8_t> snapshot = save_snapshot(saved, 1);
+
+  Animation loaded = animation_of(config);
+  for (int tick = 0; tick < 7; ++tick) loaded.step(kBreeze, kTick_s);
+  ASSERT_TRUE(load_snapshot(loaded, 1, snapshot));
+  for (int tick = 120; tick < 300; ++tick) {
+    saved.step(wind_at(tick), kTick_s);
+    loaded.step(wind_at(tick), kTick_s);
+    const auto frame = saved.encode({});
+    ASSERT_TRUE(std::ranges::equal(frame, loaded.encode({}))) << "tick " << tick;
+  }
 }
 
 TEST(AnimationTest, MeasuresWhatEachSceneTakesOfATick) {

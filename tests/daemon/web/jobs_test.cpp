@@ -38,9 +38,12 @@ TEST(JobsTest, WhatItPrintsIsItsResult) {
   EXPECT_FALSE(jobs.find("no such id"));
 }
 
-TEST(JobsTest, ItRunsAtTheLowestPriority) {
+TEST(JobsTest, ItRunsAtTheLowestPriority_OneThatSomebodyWaitsForBehindTheAnimation) {
   Jobs jobs;
-  EXPECT_EQ(ended(jobs, jobs.start(shell("nice")).value()).printed, "19\n");
+  JobOrder order = shell("nice");
+  EXPECT_EQ(ended(jobs, jobs.start(order).value()).printed, "19\n");
+  order.niceness = Niceness::kAwaited;
+  EXPECT_EQ(ended(jobs, jobs.start(order).value()).printed, "5\n");
 }
 
 /// Is it gone, or about to be?
