@@ -1,6 +1,7 @@
 // Requests to the daemon, each within a time.
 
 const PATIENCE_MS = 2500;
+const CHANGE_PATIENCE_MS = 65_000; // the daemon may make scenes anew; after 60 s it gives up by itself, with words
 
 /** The daemon replied, but refused the request. */
 export class Refused extends Error {
@@ -13,7 +14,7 @@ export class Refused extends Error {
 }
 
 /** The JSON of its answer. Throws Refused, or any other error if no reply came. */
-export async function ask<T>(path: string, body?: object, patience_ms = PATIENCE_MS + (body ? PATIENCE_MS : 0), method = "POST"): Promise<T> {
+export async function ask<T>(path: string, body?: object, patience_ms = body ? CHANGE_PATIENCE_MS : PATIENCE_MS, method = "POST"): Promise<T> {
   const abort = new AbortController();
   const patience = setTimeout(() => abort.abort(), patience_ms);
   try {
