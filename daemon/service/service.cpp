@@ -136,6 +136,9 @@ class Service::Io {
   Io(const settings::Config& config, const Options& options)
       : options_(options),
         rate_hz_(config.animation.rate_hz),
+        hello_{.software = with_version("yuragi"),
+               .tick_rate_hz = rate_hz_,
+               .wind_from_deg = config.wind.default_direction_deg},
         http_(config.http),
         least_free_bytes_(config.recording.least_free_bytes),
         page_file_trouble_(config.page_trouble),
@@ -246,9 +249,7 @@ class Service::Io {
  private:
   stream::TcpStreamSettings stream_settings(const settings::Config& config) {
     stream::TcpStreamSettings settings;
-    settings.hello.software = with_version("yuragi");
-    settings.hello.tick_rate_hz = rate_hz_;
-    settings.hello.wind_from_deg = config.wind.default_direction_deg;
+    settings.hello = hello_;
     if (animation_) {
       settings.scenes = animation_->describe();
       animation::checked_scenes_message(settings.scenes);
@@ -292,8 +293,7 @@ class Service::Io {
                            .key = http_.key,
                            .guide = web::installed_folder("guide"),
                            .viewer = web::installed_folder("wall"),
-                           .software = with_version("yuragi"),
-                           .tick_rate_hz = rate_hz_};
+                           .hello = hello_};
     settings.hosts.push_back(asio::ip::host_name());
     settings.ask = [this](const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply) {
       asio::post(io_, [this, control, is_local, reply = std::move(reply)] {
@@ -782,6 +782,7 @@ class Service::Io {
 
   Options options_;
   double rate_hz_;
+  wire::Hello hello_;
   sensing::HeldClock clock_;
   const Instant started_ = clock_.now();
   asio::io_context io_{1};

@@ -53,7 +53,10 @@ websocket::close_reason reason_of(close_code code, std::string text) {
 
 /// What all clients share.
 struct Feed {
+  explicit Feed(Sockets::Settings given) : settings(std::move(given)) {}
+
   Sockets::Settings settings;
+  stream::SharedBytes hello = std::make_shared<const wire::Bytes>(wire::encode(settings.hello));
   stream::ClientLog log{{}, now};
   stream::PoseViews poses;
   stream::SharedBytes sensors_here, sensors_elsewhere;
@@ -100,7 +103,7 @@ class Client : public std::enable_shared_from_this<Client> {
 
   void offer_moment(MomentTexts& texts) {
     if (!is_served() || wish_.wind_hz <= 0.0) return;
-    const double tick_rate_hz = feed_->settings.tick_rate_hz;
+    const double tick_rate_hz = feed_->settings.hello.tick_rate_hz;
     if (wish_.wind_hz < tick_rate_hz) {
       // Half a tick: a tick that comes a little early is not left out.
       const MonoTime time = texts.moment().mono + from_seconds(0.5 / tick_rate_hz);
@@ -255,8 +258,9 @@ class Client : public std::enable_shared_from_this<Client> {
     }
     takes_new_scenes_ = wish.takes_new_scenes;
     if (wish.wants_frames()) poses_ = feed_->poses.view(wish.frame_thinning());
-    if (wish.rate_hz > 0.0 && wish.rate_hz < feed_->settings.tick_rate_hz) frame_pace_.emplace(wish.rate_hz, now());
-    queue_.emplace(stream::ClientLimits{}, nullptr, now());
+    if (wish.rate_hz > 0.0 && wish.rate_hz < feed_->settings.hello.tick_rate_hz)
+      frame_pace_.emplace(wish.rate_hz, now());
+    queue_.emplace(stream::ClientLimits{}, feed_->hello, now());
     queue_->subscribe({.poses = wish.poses, .sensors = wish.sensors, .traces = false, .wind = wish.wind},
                       poses_ ? poses_->scenes() : nullptr, nullptr,
                       visitor_.is_trusted ? feed_->sensors_here : feed_->sensors_elsewhere, now());
@@ -346,7 +350,7 @@ class Client : public std::enable_shared_from_this<Client> {
 
 class Sockets::Server : public std::enable_shared_from_this<Server> {
  public:
-  Server(asio::io_context& io, Settings settings) : timer_(io) { feed_->settings = std::move(settings); }
+  Server(asio::io_context& io, Settings settings) : timer_(io), feed_(std::make_shared<Feed>(std::move(settings))) {}
 
   Feed& feed() { return *feed_; }
 
@@ -394,7 +398,7 @@ class Sockets::Server : public std::enable_shared_from_this<Server> {
   }
 
   asio::steady_timer timer_;
-  std::shared_ptr<Feed> feed_ = std::make_shared<Feed>();
+  std::shared_ptr<Feed> feed_;
   std::vector<std::shared_ptr<Client>> clients_;
   bool is_checking_ = false;
 };

@@ -42,7 +42,7 @@ class Sockets {
  public:
   struct Settings {
     SocketLimits limits = {};
-    double tick_rate_hz = 0.0;  ///< of the moments; a client that wants as many or more gets all
+    wire::Hello hello = {};  ///< the first of the stream's messages; a client that wants its rate or more gets all
     /// Returns true for the token of the installation. Empty: there is none.
     std::function<bool(const std::string& token)> is_token = {};
   };

@@ -130,7 +130,7 @@ class Server::Thread {
         site_(settings_.folder),
         archive_(settings_.archive),
         sockets_(*io_, {.limits = settings_.sockets,
-                        .tick_rate_hz = settings_.tick_rate_hz,
+                        .hello = settings_.hello,
                         .is_token = [this](const std::string& token) { return access_ && access_->is_token(token); }}),
         server_(std::make_unique<http::Server>(
             *io_, settings_.listen, http::Limits{.clients = settings_.clients},
@@ -320,9 +320,9 @@ class Server::Thread {
   /// `is_trusted`: gets what clients of this machine get.
   Facts facts_for(bool is_trusted, double utc_s) const {
     const auto& news = is_trusted ? here_ : elsewhere_;
-    return {.software = settings_.software,
+    return {.software = settings_.hello.software,
             .address = endpoint_,
-            .tick_rate_hz = settings_.tick_rate_hz,
+            .tick_rate_hz = settings_.hello.tick_rate_hz,
             .sensors = news ? &news->sensors : nullptr,
             .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
             .patience_s = seconds(settings_.patience),

@@ -40,8 +40,7 @@ struct Settings {
   std::filesystem::path certificate = {}, key = {};  ///< by TLS (http::CertificateFiles); empty: in the clear
   /// The folders of the guide as HTML and of the viewer as WebAssembly, read by the constructor.
   std::filesystem::path guide = {}, viewer = {};
-  std::string software = {};  ///< "yuragi 0.2.0"
-  double tick_rate_hz = 0.0;
+  wire::Hello hello = {};  ///< software and rate; the first of the stream's messages by WebSocket
   /// Carries out a client's request and calls `reply` once, on any thread. Called on the web server's own; must not
   /// wait. `is_local`: the client is of this machine, or trusted as if it were. Empty: every request is refused.
   std::function<void(const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply)> ask =

@@ -28,7 +28,7 @@ daemon::web::Settings settings() {
           .hosts = {"roof"},
           .takes_token = true,
           .token = Secret("correct horse battery staple"),
-          .software = "yuragi 0.0.0",
+          .hello = {.software = "yuragi 0.0.0"},
           .ask = [](const wire::Control& control, bool,
                     const auto& reply) { reply({.done = true, .message = control.scene, .scenes = {}}); },
           .history =

@@ -27,8 +27,10 @@ daemon::stream::SharedBytes share(wire::Bytes bytes) {
 }
 
 std::unique_ptr<daemon::web::Server> make_server() {
-  auto server = std::make_unique<daemon::web::Server>(daemon::web::Settings{
-      .listen = "127.0.0.1:0", .origins = {"https://editor.p5js.org"}, .software = "fuzz", .tick_rate_hz = 60.0});
+  auto server =
+      std::make_unique<daemon::web::Server>(daemon::web::Settings{.listen = "127.0.0.1:0",
+                                                                  .origins = {"https://editor.p5js.org"},
+                                                                  .hello = {.software = "fuzz", .tick_rate_hz = 60.0}});
   server->publish_scenes(share(wire::encode(samples::scenes())));
   server->publish_sensors(share(wire::encode(samples::sensors())), share(wire::encode(samples::sensors())));
   return server;

@@ -43,6 +43,8 @@ std::optional<std::string> Wall::take(std::span<const std::uint8_t> message, dou
   if (auto* frame = std::get_if<wire::Frame>(&*decoded)) {
     utc_s_ = 1e-9 * static_cast<double>(frame->info.utc_ns);
     timeline_.accept(*frame, now_s);
+  } else if (const auto* hello = std::get_if<wire::Hello>(&*decoded)) {
+    if (hello->wind_from_deg) director_.set_wind_from(*hello->wind_from_deg);
   } else if (auto* scenes = std::get_if<wire::Scenes>(&*decoded)) {
     timeline_.set_scenes(std::move(*scenes));
   } else if (const auto* sensors = std::get_if<wire::Sensors>(&*decoded)) {

@@ -86,10 +86,11 @@ class Socket {
     const auto* const begin = reinterpret_cast<const std::uint8_t*>(received.bytes.data());
     return wire::decode(std::span(begin, received.bytes.size())).value();
   }
-  /// Sends what it wants, and waits until the server has taken it, which it answers with the scenes.
+  /// Sends what it wants, and waits until the server has taken it, which it answers with Hello and the scenes.
   void ask(json wish) {
     if (!wish.contains("stream")) wish["stream"] = json::object();
     send(wish.dump());
+    EXPECT_EQ(std::get<wire::Hello>(receive_message()).wind_from_deg, 225.0);
     EXPECT_TRUE(std::holds_alternative<wire::Scenes>(receive_message()));
   }
   /// Why the server closes it.
@@ -125,7 +126,8 @@ class SocketsTest : public testing::Test {
   /// Its 64 places, unless the test chooses others.
   void start(Settings settings = {}) {
     settings.listen = "127.0.0.1:0";
-    settings.tick_rate_hz = 1.0 / kTick_s;
+    settings.hello.tick_rate_hz = 1.0 / kTick_s;
+    settings.hello.wind_from_deg = 225.0;
     server_ = std::make_unique<Server>(std::move(settings));
     server_->publish_scenes(share(wire::encode(samples::scenes())));
   }
@@ -232,6 +234,7 @@ TEST_F(SocketsTest, ASubscribeOfTheStreamAsABinaryMessage) {
   wire::Bytes wish = wire::encode(wire::Subscribe{.sensors = true, .client = "page"});
   wish.erase(wish.begin(), wish.begin() + wire::kSizePrefixBytes);
   page.send_binary(wish);
+  EXPECT_TRUE(std::holds_alternative<wire::Hello>(page.receive_message()));
   EXPECT_TRUE(std::holds_alternative<wire::Scenes>(page.receive_message()));
   EXPECT_TRUE(std::holds_alternative<wire::Sensors>(page.receive_message()));
   server_->publish_scenes(share(wire::encode(samples::scenes())));

@@ -133,8 +133,7 @@ class TlsTest : public CertificateFilesTest {
     server_ = std::make_unique<Server>(Settings{.listen = "127.0.0.1:0",
                                                 .certificate = certificate_file_,
                                                 .key = key_file_,
-                                                .software = "yuragi 0.0.0",
-                                                .tick_rate_hz = 60.0});
+                                                .hello = {.software = "yuragi 0.0.0", .tick_rate_hz = 60.0}});
   }
 
   SelfSignedCertificate certificate_{"IP:127.0.0.1"};

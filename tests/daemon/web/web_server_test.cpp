@@ -104,7 +104,7 @@ class WebServerTest : public testing::Test {
   Settings settings() {
     return {.listen = "127.0.0.1:0",
             .hosts = {"roof"},
-            .software = "yuragi 0.0.0",
+            .hello = {.software = "yuragi 0.0.0"},
             .ask =
                 [this](const wire::Control& control, bool is_local, const auto& reply) {
                   asked_ += control.scene + (is_local ? " from here;" : " from elsewhere;");
