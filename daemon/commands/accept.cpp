@@ -208,7 +208,7 @@ void run_accept(const AcceptOptions& options) {
   const service::DaemonLog log(false);
   spdlog::set_level(spdlog::level::err);  // the messages of sensors are on the page
   const auto file = installed_config(options.config_file);
-  const settings::Config config = file ? settings::load_config(*file) : settings::default_config();
+  const settings::Config config = configuration_of(file);
   service::check(config);
   const auto lock = lock_output(options.output);
   platform::OutputFile output(options.output, options.force);  // checked before the work

@@ -111,8 +111,7 @@ void TakeOptions::add_to(CLI::App& command) {
 
 void export_take(const TakeOptions& options, const std::filesystem::path& recording, const std::string& start,
                  const std::filesystem::path& output, bool force) {
-  const settings::Config config =
-      options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
+  const settings::Config config = configuration_of(options.config_file);
   platform::OutputFile file(output, force);
   TakeMaker maker(options);
   const bool is_watched = isatty(STDERR_FILENO) != 0;

@@ -17,6 +17,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
+#include "daemon/commands/run_options.hpp"
 #include "daemon/tools/offline/field_frames.hpp"
 #include "daemon/tools/offline/npy.hpp"
 #include "daemon/tools/plot/plot.hpp"
@@ -278,8 +279,7 @@ void run_field(FieldOptions options) {
   };
   std::string title;
   if (options.recording) {
-    settings::Config config =
-        options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
+    settings::Config config = configuration_of(options.config_file);
     config.sensors.resize(1);
     if (options.seed) config.seed = *options.seed;
     if (options.is_frozen || options.is_evolving) config.wind.is_evolving = options.is_evolving;

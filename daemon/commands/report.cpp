@@ -13,6 +13,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
+#include "daemon/commands/run_options.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/site_octaves.hpp"
 #include "daemon/tools/report/measure_recording.hpp"
@@ -140,8 +141,7 @@ void run_report(const ReportOptions& options) {
   std::optional<platform::OutputFile> json_file;
   if (!options.json.empty()) json_file.emplace(options.json, options.force, drivers::windlog::kSideSuffixes);
 
-  const settings::Config config =
-      options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
+  const settings::Config config = configuration_of(options.config_file);
   tools::report::Settings settings;
   settings.sensors = options.sensors;
   settings.stale_intervals = config.wind.stale_intervals;

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -53,7 +54,8 @@ settings::Config config_with_warnings(const RunOptions& options) {
 }
 
 /// Runs the daemon, whose configuration can be read again if it is a file. `record`: the recording in place of the
-/// configured one. Returns true if it is to be started again.
+/// configured one. A configuration that cannot be used together with what the page has set up is used without that.
+/// Returns true if it is to be started again.
 bool run_once(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
   service::hold_back_hangups();
   const service::DaemonLog log(options.verbose);
@@ -78,7 +80,19 @@ bool run_once(const RunOptions& options, const std::optional<std::filesystem::pa
       return warnings;
     };
   }
-  return service::Service(config, service).run();
+  std::optional<service::Service> daemon;
+  try {
+    daemon.emplace(config, service);
+  } catch (const settings::ConfigError& fault) {
+    if (config.page_file.empty()) throw;
+    spdlog::warn("what the page has set up is left out ({}): the daemon cannot be started with it: {}",
+                 config.page_file, fault.what());
+    settings::Config own = settings::load_config(*options.config_file);
+    own.page_trouble = fault.what();
+    daemon.emplace(options.address ? settings::listening_at(std::move(own), *options.address) : std::move(own),
+                   service);
+  }
+  return daemon->run();
 }
 
 void run_daemon(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {

@@ -46,6 +46,13 @@ CLI::Validator duration_in_seconds() {
   return CLI::Validator(duration_to_seconds, "");
 }
 
+settings::Config configuration_of(const std::optional<std::filesystem::path>& file) {
+  if (!file) return settings::default_config();
+  settings::Config config = settings::load_installation(*file);
+  for (const std::string& warning : settings::page_warnings(config)) fmt::print(stderr, "warning: {}\n", warning);
+  return config;
+}
+
 settings::Config RunOptions::config() const {
   settings::Config config = config_file ? settings::load_installation(*config_file) : settings::default_config();
   return address ? settings::listening_at(std::move(config), *address) : config;

@@ -36,4 +36,8 @@ void add_connect(CLI::App& command, std::optional<std::string>& address);
 /// The CLI transform that reads a duration in seconds: 90, 90s, 5min, 2h.
 CLI::Validator duration_in_seconds();
 
+/// The configuration of a command that starts no daemon: of its file, with what the page has set up, or the built-in
+/// one. What the page has set up and cannot be used is named on standard error.
+settings::Config configuration_of(const std::optional<std::filesystem::path>& file);
+
 }  // namespace yuragi::daemon::commands

@@ -20,6 +20,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
+#include "daemon/commands/run_options.hpp"
 #include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
@@ -301,8 +302,7 @@ void write_wind(const WindOptions& options, const settings::Config& config, std:
 void run_wind(WindOptions options) {
   existing(options.file);
   for (const std::string& gap : options.gaps) options.offline.gaps.push_back(parse_gap(gap));
-  settings::Config config =
-      options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
+  settings::Config config = configuration_of(options.config_file);
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
   if (options.value) config.sensors[0].by_name.at(settings::kBlendTable).set("value", *options.value);

@@ -53,7 +53,7 @@ bool Resumption::load(const settings::Config& config, Motion motion, MonoTime no
   // A clock that was set meanwhile makes it old.
   if (age < -kMaxAge || age > kMaxAge) return false;
   const auto refuse = [this](const std::string& why) {
-    spdlog::warn("resume: {} {}: the scenes begin at rest", file_.string(), why);
+    spdlog::info("resume: {} {}: the scenes begin at rest", file_.string(), why);
     return false;
   };
   if (!snapshot) return refuse(snapshot.error().message);

@@ -713,6 +713,10 @@ class Service::Io {
       if (std::string trouble = state::clock_trouble(clock_watch_->latest()); !trouble.empty())
         status.troubles.push_back(std::move(trouble));
     }
+    if (const auto worst = stream_.worst_clock()) {
+      if (std::string trouble = state::clock_trouble_of_viewer(worst->client, worst->offset_s); !trouble.empty())
+        status.troubles.push_back(std::move(trouble));
+    }
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;

@@ -8,6 +8,8 @@
 namespace yuragi::daemon::state {
 namespace {
 
+constexpr std::string_view kOutOfStep = "the screens of the wall are out of step by more than 5 ms: ";
+
 void add_recorder_attention(std::vector<std::string>& all, const wire::RecorderStatus& recorder) {
   if (recorder.state == wire::RecorderState::kRetrying)
     all.push_back("the recorder cannot write, and tries again: " + recorder.error);
@@ -57,8 +59,13 @@ std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
 
 std::string clock_trouble(const platform::ClockOffset& offset) {
   if (!offset.is_large()) return {};
-  return "the screens of the wall are out of step by more than 5 ms: " + text_of(offset) +
-         "; `chronyc sources` shows what sets it";
+  return std::string(kOutOfStep) + text_of(offset) + "; `chronyc sources` shows what sets it";
+}
+
+std::string clock_trouble_of_viewer(std::string_view viewer, double offset_s) {
+  const platform::ClockOffset offset{.offset_s = offset_s, .source = fmt::format("the viewer at {}", viewer)};
+  if (!offset.is_large()) return {};
+  return std::string(kOutOfStep) + text_of(offset) + "; `chronyc sources` on its machine shows what sets it";
 }
 
 }  // namespace yuragi::daemon::state

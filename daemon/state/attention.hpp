@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/platform/clock_offset.hpp"
@@ -25,5 +26,7 @@ std::vector<std::string> needs_attention(const wire::Sensors& sensors);
 /// For Sensors::troubles of a wall whose screens are in step by the machines' clocks: what is wrong with this one's.
 /// Empty if it is right, or unknown. Pure.
 std::string clock_trouble(const platform::ClockOffset& offset);
+/// The same for the clock of the machine of a viewer, by its address.
+std::string clock_trouble_of_viewer(std::string_view viewer, double offset_s);
 
 }  // namespace yuragi::daemon::state

@@ -87,7 +87,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool is_open() const { return socket_.is_open(); }
   const Peer& peer() const { return peer_; }
   bool is_trusted() const { return is_trusted_; }
-  std::uint8_t given_up() const { return is_open() ? given_up_ : 0; }
+  wire::Display display() const { return is_open() ? display_ : wire::Display{}; }
+  const std::string& endpoint() const { return endpoint_; }
 
   void start() {
     feed_->log->info("client {} connected", endpoint_);
@@ -228,7 +229,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (control != nullptr && queue_.is_subscribed()) return take_control(*control);
     const auto* display = std::get_if<wire::Display>(&*message);
     if (display != nullptr && queue_.is_subscribed()) {
-      given_up_ = display->given_up;
+      display_ = *display;
       return read_prefix();
     }
     const auto* wish = std::get_if<wire::Subscribe>(&*message);
@@ -327,7 +328,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool is_trusted_;  // of this machine, or it has shown the token
   std::string endpoint_, client_name_;
   std::string dismissed_because_;
-  std::uint8_t given_up_ = 0;  // wire::Display
+  wire::Display display_;  // the last one
   bool takes_new_scenes_ = false;
   bool wants_traces_ = false;
   std::string traced_sensor_;                         // empty: all of them
@@ -370,8 +371,18 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
 
   std::uint8_t given_up() const {
     std::uint8_t most = 0;
-    for (const auto& connection : connections_) most = std::max(most, connection->given_up());
+    for (const auto& connection : connections_) most = std::max(most, connection->display().given_up);
     return most;
+  }
+
+  std::optional<ClientClock> worst_clock() const {
+    std::optional<ClientClock> worst;
+    for (const auto& connection : connections_) {
+      const std::optional<double> offset_s = connection->display().clock_offset_s;
+      if (offset_s && (!worst || std::abs(*offset_s) > std::abs(worst->offset_s)))
+        worst = {.client = connection->endpoint(), .offset_s = *offset_s};
+    }
+    return worst;
   }
 
   bool has_untrusted_clients() const {
@@ -546,6 +557,9 @@ SharedBytes TcpStream::scenes() const {
 }
 std::uint8_t TcpStream::given_up() const {
   return server_->given_up();
+}
+std::optional<TcpStream::ClientClock> TcpStream::worst_clock() const {
+  return server_->worst_clock();
 }
 
 bool TcpStream::has_untrusted_clients() const {

@@ -92,6 +92,12 @@ class TcpStream final : public Transport {
   bool has_untrusted_clients() const override;
   /// The most of all clients' wire::Display.
   std::uint8_t given_up() const;
+  /// The client whose clock is farthest from UTC, by its wire::Display. Nullopt: none reports its clock.
+  struct ClientClock {
+    std::string client;  ///< "192.0.2.7:40116"
+    double offset_s = 0.0;
+  };
+  std::optional<ClientClock> worst_clock() const;
 
   /// Returns true if any client has subscribed to the raw messages of this sensor's device.
   bool wants_trace(std::string_view sensor) const;

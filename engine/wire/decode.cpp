@@ -21,6 +21,7 @@ bool read_text(const flatbuffers::String* from, std::string& to) {
 namespace {
 
 constexpr double kMaxTimes = 1e3;
+constexpr double kMaxViewerOffset_s = 1e10;  // a clock that begins in 1970 is off by 1.8e9
 constexpr double kMaxWind_m_s = 1e3;
 constexpr double kMaxWay_m = 1e6;
 constexpr double kMaxDuration_s = 1e12;
@@ -352,7 +353,8 @@ bool read(const fb::Sensors& from, Sensors& to) {
 
 bool read(const fb::Display& from, Display& to) {
   to.given_up = from.given_up();
-  return true;
+  if (from.clock_offset_s()) to.clock_offset_s = *from.clock_offset_s();
+  return !to.clock_offset_s || is_within(*to.clock_offset_s, -kMaxViewerOffset_s, kMaxViewerOffset_s);
 }
 
 bool read(const fb::PlayerCommand& from, PlayerCommand& to) {

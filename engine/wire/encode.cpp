@@ -483,7 +483,10 @@ Bytes encode(const Sensors& sensors) {
 
 Bytes encode(const Display& display) {
   Builder builder;
-  return finish(builder, fb::Body_Display, fb::CreateDisplay(builder, display.given_up));
+  fb::DisplayBuilder table(builder);
+  table.add_given_up(display.given_up);
+  if (display.clock_offset_s) table.add_clock_offset_s(*display.clock_offset_s);
+  return finish(builder, fb::Body_Display, table.Finish());
 }
 
 Bytes encode(const Control& control) {

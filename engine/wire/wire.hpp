@@ -382,10 +382,13 @@ struct RawTrace {
   std::uint64_t lost = 0;           ///< messages of this sensor that were passed over just before
 };
 
-/// The number of steps of detail that a client, which shows a part of a wall, omits in its pictures. All parts should
-/// look the same.
+/// The state of a client that shows a part of a wall.
 struct Display {
-  std::uint8_t given_up = 0;
+  std::uint8_t given_up = 0;  ///< steps of detail that it omits in its pictures; all parts should look the same
+  /// Its machine's clock less UTC; nullopt: unknown, or its pictures do not depend on it.
+  std::optional<double> clock_offset_s = std::nullopt;
+
+  friend bool operator==(const Display&, const Display&) = default;
 };
 
 using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply, RawTrace, Display>;

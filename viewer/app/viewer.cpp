@@ -279,13 +279,14 @@ class Viewer::Show {
   }
 
   /// All parts of a wall, whose viewers may run on several machines, are drawn at the quality of the slowest: the
-  /// daemon passes on what each omits.
+  /// daemon passes on what each omits. It reports a clock that puts a screen out of step.
   void agree_with_wall() {
     pace_->hold(sensors_->given_up);
-    const std::uint8_t own = pace_->given_up();
-    if (own == sent_given_up_ && own <= sensors_->given_up) return;
-    connection_.send(wire::Display{.given_up = own});
-    sent_given_up_ = own;
+    wire::Display own{.given_up = pace_->given_up()};
+    if (timeline_.fixed_delay()) own.clock_offset_s = clock_watch_->latest().offset_s;
+    if (own == sent_display_ && own.given_up <= sensors_->given_up) return;
+    connection_.send(own);
+    sent_display_ = own;
   }
 
   /// How much is drawn of the next picture, after one of this size.
@@ -371,7 +372,10 @@ class Viewer::Show {
   /// Takes what was received, and advances to now.
   void advance() {
     stream::Inbox inbox = connection_.take();
-    if (inbox.wind_from_deg) director_->set_wind_from(*inbox.wind_from_deg);
+    if (inbox.wind_from_deg) {  // a new connection
+      director_->set_wind_from(*inbox.wind_from_deg);
+      sent_display_ = {};
+    }
     if (inbox.scenes) timeline_.set_scenes(std::move(*inbox.scenes));
     const bool is_same_machine = connection_.status().is_same_machine;
     for (stream::TimedFrame& timed : inbox.frames) {
@@ -573,7 +577,7 @@ class Viewer::Show {
   std::optional<pace::Keeper> pace_;                         // of a window: a picture in a file is drawn in full
   pace::Step logged_step_{.quality = look::Quality::kAuto};  // in the log
   PixelSize paced_size_;
-  std::uint8_t sent_given_up_ = 0;  // to the daemon
+  wire::Display sent_display_;  // on the present connection
   int measured_pictures_ = 0;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;

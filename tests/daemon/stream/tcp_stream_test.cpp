@@ -1018,6 +1018,23 @@ TEST_F(TcpStreamTest, KnowsTheMostThatAPartOfAWallGivesUp) {
   EXPECT_FALSE(left.closed);
 }
 
+TEST_F(TcpStreamTest, KnowsTheClientWhoseClockIsFarthestFromUtc) {
+  TestClient left(io_, stream_.local_endpoint());
+  left.send(wire::encode(wire::Subscribe{.sensors = true, .client = ""}));
+  left.send(wire::encode(wire::Display{.clock_offset_s = 0.002}));
+  ASSERT_TRUE(turn_until([&] { return stream_.worst_clock().has_value(); }));
+  {
+    RemoteClient right(io_, stream_.local_endpoint());
+    right.send(wire::encode(wire::Subscribe{.sensors = true, .client = ""}));
+    right.send(wire::encode(wire::Display{.given_up = 1, .clock_offset_s = -0.03}));
+    ASSERT_TRUE(turn_until([&] { return stream_.worst_clock()->offset_s == -0.03; }));
+    EXPECT_NE(stream_.worst_clock()->client, "");
+  }
+  ASSERT_TRUE(turn_until([&] { return stream_.worst_clock()->offset_s == 0.002; })) << "what is gone has no clock";
+  left.send(wire::encode(wire::Display{}));
+  EXPECT_TRUE(turn_until([&] { return !stream_.worst_clock(); }));
+}
+
 TEST_F(TcpStreamTest, ADisplayBeforeTheSubscriptionEndsTheConnection) {
   TestClient client(io_, stream_.local_endpoint());
   client.send(wire::encode(wire::Display{.given_up = 4}));

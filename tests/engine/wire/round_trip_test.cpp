@@ -35,6 +35,16 @@ TEST(WireRoundTrip, WhatAPartOfAWallGivesUpComesBack) {
   }
 }
 
+TEST(WireRoundTrip, TheClockOfAPartOfAWallComesBackUnlessItIsNoNumber) {
+  EXPECT_EQ(decoded<Display>(encode(Display{})).clock_offset_s, std::nullopt);
+  for (const double offset_s : {0.0, -0.0123, 3600.0})
+    EXPECT_EQ(decoded<Display>(encode(Display{.clock_offset_s = offset_s})).clock_offset_s, offset_s);
+  for (const double offset_s : {std::numeric_limits<double>::quiet_NaN(), 1e300}) {
+    const Bytes bytes = encode(Display{.clock_offset_s = offset_s});
+    EXPECT_FALSE(decode(std::span(bytes).subspan(kSizePrefixBytes)));
+  }
+}
+
 TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
   const Subscribe subscribe = decoded<Subscribe>(encode(samples::subscribe()));
   EXPECT_EQ(subscribe.protocol, kProtocol);
