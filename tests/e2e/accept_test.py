@@ -51,7 +51,9 @@ class Accept(unittest.TestCase):
     def test_devices_are_measured_from_device_to_pose(self):
         roof = ('name = "roof"\ndriver = "modbus"\nprofile = "renke-rs-fsjt-rs-fxjt-n01"\nhost = "127.0.0.1"\n'
                 f"port = {self.start_slave()}")
-        config = self.config(roof, 'name = "mast"\ndriver = "modbus"\nprofile = "renke-rs-fsjt-n01"\nport = 1')
+        config = self.config(roof)
+        with open(config + ".page.toml", "w", encoding="utf-8") as out:
+            out.write('[[sensor]]\nname = "mast"\ndriver = "modbus"\nprofile = "renke-rs-fsjt-n01"\nport = 1\n')
         done = self.accept(config, "--json", "--site", "Museum")
         self.assertEqual(done.returncode, 1, done.stderr)
         said = json.loads(done.stdout)
@@ -69,7 +71,7 @@ class Accept(unittest.TestCase):
             text = page.read()
         self.assertIn("<h1>Hand-over: Museum</h1>", text)
         self.assertIn("taken over by (name)", text)
-        self.assertEqual(sorted(os.listdir(self.folder)), ["page.html", "wall.toml"], "nothing is recorded")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["page.html", "wall.toml", "wall.toml.page.toml"], "nothing is recorded")
 
     def test_a_sensor_is_simulated_before_it_is_measured(self):
         config = self.config('name = "roof"\ndriver = "modbus"\nport = 1')
