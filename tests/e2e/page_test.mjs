@@ -707,6 +707,7 @@ test("a value of the look and of a scene is kept, undone, and goes back to the c
   await page.fill("#pairing-code", code());
   await page.keyboard.press("Enter");
   await waitForHaze("0.155");
+  await button("Undo: haze").waitFor(); // paired, and set: before that a second change would pair once more
   await x.fill("2.5");
   await x.press("Enter");
   await button("Undo: x").waitFor();
