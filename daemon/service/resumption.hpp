@@ -22,7 +22,8 @@ struct Motion {
 
 /// The file with which a daemon that is started again goes on: its first frame is the one after the last frame of the
 /// run before, in the same wind, so that a picture on the wall does not jump. The time between the two runs counts as
-/// none. Written at an orderly end (a signal, a restart for the page), not by a crash.
+/// none. Written at an orderly end (a signal, a restart for the page), not by a crash. Sensors may have been added at
+/// the end, as the page adds them.
 ///
 /// Belongs to the I/O thread.
 class Resumption {
@@ -45,8 +46,8 @@ class Resumption {
   std::filesystem::path file_;
 };
 
-/// The hash of what the motion follows from: scenes, wind, its shaping, the rate, and what there is of sensors, but not
-/// how they are connected and calibrated.
-std::uint64_t motion_made_of(settings::Config config);
+/// The hash of what the motion follows from: scenes, wind, its shaping, the rate, and the first `sensors` of the
+/// sensors, but not how they are connected and calibrated.
+std::uint64_t motion_made_of(settings::Config config, std::size_t sensors);
 
 }  // namespace yuragi::daemon::service

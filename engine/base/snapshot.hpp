@@ -12,7 +12,7 @@ namespace yuragi {
 
 /// The version of the motion: of what a tick computes, and of what each list_state() lists. It rises with every change
 /// of a golden hash (tests/golden), and a snapshot of another version is refused.
-inline constexpr std::uint32_t kMotionVersion = 1;
+inline constexpr std::uint32_t kMotionVersion = 2;
 
 /// A snapshot is the moving state of an object, as bytes:
 ///

@@ -99,6 +99,18 @@ class StatePass {
     accept(value, static_cast<std::size_t>(passed), passed < end);
   }
 
+  /// Values to whose end further ones may have been added since they were saved: these are not touched.
+  template <class Value>
+  void grown(std::span<Value> values) {
+    const auto saved = transfer(std::uint64_t{values.size()});
+    if (saved > values.size()) {
+      note(Problem::kLengthDiffers);
+      bytes_ = {};
+      return;
+    }
+    for (Value& value : values.first(saved)) pass(value);
+  }
+
   /// An enumerator from 0 to `last`.
   template <class Enum>
   void choice(Enum& value, Enum last) {

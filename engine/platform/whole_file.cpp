@@ -1,5 +1,6 @@
 #include "engine/platform/whole_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <string>
 #include <system_error>
@@ -14,6 +15,8 @@
 namespace yuragi::platform {
 
 namespace {
+
+constexpr std::size_t kGrowBy_bytes = 4096;
 
 FailureError cannot_create(const std::string& message) {
   return FailureError({message, FailureKind::kCannotCreate});
@@ -84,9 +87,11 @@ Result<std::string, Failure> read_whole(const std::filesystem::path& file, std::
   if (fstat(in.get(), &status) != 0) return failure_of(errno);
   if (!S_ISREG(status.st_mode))
     return Failure{"is not a regular file, but a folder, a pipe or a device", FailureKind::kNoInput};
-  std::string text(most_bytes + 1, '\0');
+  // One byte more than it seems to have: it may grow meanwhile, and files of the kernel have no size.
+  std::string text(std::min(most_bytes, static_cast<std::size_t>(status.st_size)) + 1, '\0');
   std::size_t length = 0;
-  while (length < text.size()) {
+  while (length <= most_bytes) {
+    if (length == text.size()) text.resize(std::min(most_bytes + 1, 2 * length + kGrowBy_bytes));
     const ssize_t count = read(in.get(), text.data() + length, text.size() - length);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return failure_of(errno);

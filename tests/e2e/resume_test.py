@@ -129,6 +129,13 @@ port = {port}
             self.assertLess(step, MAX_FRAMES_BETWEEN, (name, steps))
         self.assertFalse(os.path.exists(self.snapshot), "a state is loaded once")
 
+    def test_they_do_so_with_a_sensor_more(self):
+        last, largest = self.run_and_end()
+        self.configuration += '[[sensor]]\nname = "mast"\ndriver = "synthetic"\n'
+        self.configure("")
+        for name, step in step_m(last, Run(self).first_poses()).items():
+            self.assertLess(step, MAX_FRAMES_BETWEEN * largest[name], name)
+
     def test_without_it_they_jump(self):
         self.configure("[animation]\nresume = false\n")
         steps = self.steps_to_the_next_run()

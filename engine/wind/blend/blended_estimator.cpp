@@ -95,7 +95,9 @@ bool BlendedEstimator::accept(std::size_t index, const Reading& reading) noexcep
 }
 
 void BlendedEstimator::list_state(StatePass& pass) {
-  pass(sources_, choice_, reach_fit_, ground_, stroke_, advection_m_s_, state_, reach_m_, has_begun_, shares_);
+  pass.grown(std::span(sources_));
+  pass(choice_, reach_fit_, ground_, stroke_, advection_m_s_, state_, reach_m_, has_begun_);
+  pass.grown(std::span(shares_));
   pass.total(last_step_s_);
   if (settings_.site) pass(*settings_.site);
 }

@@ -98,7 +98,8 @@ class BlendedEstimator {
   /// The remaining noise at the place of a sensor, where most is known.
   turbulence::GustNoise::Moment gusts_at(std::size_t pen) const noexcept;
 
-  /// The site's spectrum included. What each advance() computes anew is left out.
+  /// The site's spectrum included. What each advance() computes anew is left out. Sources may have been added at the
+  /// end: they begin silent.
   void list_state(StatePass& pass);
 
  private:

@@ -69,7 +69,8 @@ class GustReachFit {
   bool restore(const GustReach& reach) noexcept;
 
   void list_state(StatePass& pass) {
-    pass(traces_, paces_, reach_, covariance_);
+    pass.grown(std::span(traces_));
+    pass(paces_, reach_, covariance_);
     pass.total(since_observed_s_);
   }
 

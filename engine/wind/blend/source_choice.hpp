@@ -36,7 +36,10 @@ class SourceChoice {
   /// Its weight, 0 to 1, in the gusts that the selected absolute sources do not resolve.
   double gusts(std::size_t source) const noexcept { return std::clamp(entries_[source].gusts.value, 0.0, 1.0); }
 
-  void list_state(StatePass& pass) { pass(has_begun_, entries_); }
+  void list_state(StatePass& pass) {
+    pass(has_begun_);
+    pass.grown(std::span(entries_));
+  }
 
  private:
   static constexpr int kMaxFailures = 7;  ///< counted

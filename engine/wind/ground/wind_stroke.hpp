@@ -65,14 +65,14 @@ struct WindStroke {
   OctaveLanes octave_hz{};  ///< frequency at which each octave of the tiles passes
   std::array<WindPen, kMaxPens> pens;
 
-  /// All but the number of pens, which never changes.
+  /// All but the number of pens, which is not known from the bytes alone: pens may have been added at the end.
   void list_state(StatePass& pass) {
     pass.within(way_m, 0.0, StatePass::kLargestTotal);
     pass.total(carried_east_m);
     pass.total(carried_south_m);
     pass.unit_vector(ahead.u_m_s, ahead.v_m_s);
     pass(coherence, octave_hz);
-    for (WindPen& pen : std::span(pens).first(pen_count)) pass(pen);
+    pass.grown(std::span(pens).first(pen_count));
   }
 };
 

@@ -154,8 +154,8 @@ void WindTapes::write(const WindStroke& stroke) noexcept {
 }
 
 void WindTapes::list_state(StatePass& pass) {
-  pass(tapes_);
-  for (auto& rows : std::span(kept_).first(tapes_.size())) pass(rows);
+  pass.grown(std::span(tapes_));
+  pass.grown(std::span(kept_).first(tapes_.size()));
   pass.index(pen_count_, tapes_.size() + 1);
   std::size_t turn = next_row_ / kRowsATick;
   pass.index(turn, kRows / kRowsATick);

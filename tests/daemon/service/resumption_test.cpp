@@ -22,7 +22,8 @@ kind = "grass"
 std::uint64_t made_of(const std::string& more, std::string text = kWall, const std::string& old = "",
                       const std::string& replaced = "") {
   if (!old.empty()) text.replace(text.find(old), old.size(), replaced);
-  return motion_made_of(settings::parse_config(more + text, "wall.toml"));
+  const settings::Config config = settings::parse_config(more + text, "wall.toml");
+  return motion_made_of(config, config.sensors.size());
 }
 
 TEST(ResumptionTest, TheMotionFollowsFromScenesWindAndTheNumberOfSensors) {
@@ -46,6 +47,11 @@ TEST(ResumptionTest, ItDoesNotFollowFromDoorsAndLookOrHowASensorIsConnectedAndCa
   EXPECT_EQ(made_of("[[camera]]\nname = \"near\"\n"), wall);
   EXPECT_EQ(made_of("", kWall, "192.0.2.1", "192.0.2.2"), wall);
   EXPECT_EQ(made_of("", kWall, "port = 4800", "port = 4800\n[sensor.calibration]\ngain = 1.1"), wall);
+}
+
+TEST(ResumptionTest, WithoutTheLastSensorsItIsAsBeforeTheyWereAdded) {
+  const std::string mast = "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n";
+  EXPECT_EQ(motion_made_of(settings::parse_config(kWall + mast, "wall.toml"), 1), made_of(""));
 }
 
 }  // namespace

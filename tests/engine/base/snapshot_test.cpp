@@ -89,6 +89,30 @@ TEST(SnapshotTest, WhatIsAbsentIsAbsentAfterwards) {
   EXPECT_FALSE(loaded.ages);
 }
 
+/// Legs that may become more.
+struct Centipede {
+  void list_state(StatePass& pass) {
+    pass.grown(std::span(legs));
+    pass(weight);
+  }
+  std::vector<double> legs;
+  double weight = 1.0;
+};
+
+TEST(SnapshotTest, WhatWasAddedAtTheEndIsNotTouched_AndWhatIsMissingIsRefused) {
+  Centipede saved{.legs = {1.0, 2.0}, .weight = 3.0};
+  const auto snapshot = save_snapshot(saved, 5);
+  Centipede grown{.legs = {7.0, 8.0, 9.0}};
+  ASSERT_TRUE(load_snapshot(grown, 5, snapshot));
+  EXPECT_EQ(grown.legs, (std::vector{1.0, 2.0, 9.0}));
+  EXPECT_EQ(grown.weight, 3.0);
+  Centipede fewer{.legs = {7.0}};
+  const auto refused = load_snapshot(fewer, 5, snapshot);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "is damaged: its length is wrong");
+  EXPECT_EQ(fewer.legs, std::vector{7.0});
+}
+
 TEST(SnapshotTest, AgesRemainOnAnotherClock) {
   Creature saved = lively();
   const auto snapshot = save_snapshot(saved, 5, MonoTime(std::chrono::seconds(100)));

@@ -87,6 +87,15 @@ TEST(ReadWhole, TakesRegularFilesUpToALimitAndWaitsForNoPipe) {
   EXPECT_EQ(read_whole(folder / "pipe", 4).error().message, neither);
 }
 
+TEST(ReadWhole, TakesMemoryForWhatThereIs_NotForTheLimit) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a";
+  std::ofstream(file) << "wind";
+  EXPECT_EQ(*read_whole(file, std::size_t{1} << 50), "wind");
+  // The kernel states no size of it.
+  EXPECT_GT(read_whole("/proc/self/maps", std::size_t{1} << 20)->size(), 4096U);
+}
+
 TEST(WriteWhole, SaysWhyAndLeavesWhatWasThere) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder / "a";

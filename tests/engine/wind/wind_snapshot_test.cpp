@@ -26,19 +26,24 @@ constexpr std::uint64_t kMadeOf = 11;
 /// Everything between the sensors and the scenes.
 class WindChain {
  public:
-  explicit WindChain(SimdRow row, MonoTime begin = {})
-      : begin_(begin),
+  /// `sources`: how many of those that there are.
+  explicit WindChain(SimdRow row, MonoTime begin = {}, std::size_t sources = kSources)
+      : sources_(sources),
+        begin_(begin),
         site_(std::make_shared<turbulence::SiteSpectrum>()),
-        estimator_(kSources, blend_settings(site_), station_gusts()),
+        estimator_(sources, blend_settings(site_, sources), station_gusts()),
         shaping_(shaping_settings(), station_gusts()),
-        tapes_(ground::WindStroke::kMaxPens, row) {}
+        tapes_(sources, row) {}
 
   void list_state(StatePass& pass) { pass(estimator_, shaping_, tapes_, view_); }
+
+  /// The others are silent.
+  void hear(std::size_t sources) { heard_ = sources; }
 
   /// What the scenes get at a tick.
   ground::Wind at(std::uint64_t tick) {
     const MonoTime now = begin_ + from_seconds(static_cast<double>(tick) / static_cast<double>(kTicks_hz));
-    for (std::size_t source = 0; source < kSources; ++source) {
+    for (std::size_t source = 0; source < heard_; ++source) {
       if (const auto reading = reading_of(source, tick, now)) estimator_.accept(source, *reading);
     }
     driving_.state = estimator_.advance(now);
@@ -62,14 +67,14 @@ class WindChain {
       const Vector here = wind.at(*station_gusts(), x_m, 5.0 - x_m);
       numbers.insert(numbers.end(), {here.u_m_s, here.v_m_s});
     }
-    for (std::size_t i = 0; i < kSources; ++i) numbers.push_back(estimator_.report(i).age_s);
+    for (std::size_t i = 0; i < heard_; ++i) numbers.push_back(estimator_.report(i).age_s);
     return numbers;
   }
 
- private:
   static constexpr std::size_t kSources = 4;
 
-  static blend::Settings blend_settings(std::shared_ptr<turbulence::SiteSpectrum> site) {
+ private:
+  static blend::Settings blend_settings(std::shared_ptr<turbulence::SiteSpectrum> site, std::size_t sources) {
     blend::Settings settings;
     settings.gustiness = 0.3;
     settings.reach_m = 15.0;
@@ -79,6 +84,7 @@ class WindChain {
                         {.priority = 1, .has_place = true, .east_m = 25.0, .value = ReadingValue::kUnknown},
                         {.is_relative = true, .priority = 1},
                         {.priority = 2, .unchanged_for_s = 20.0}};
+    settings.sources.resize(sources);
     return settings;
   }
 
@@ -107,6 +113,8 @@ class WindChain {
     return reading;
   }
 
+  std::size_t sources_;
+  std::size_t heard_ = sources_;
   MonoTime begin_;
   std::shared_ptr<turbulence::SiteSpectrum> site_;
   blend::BlendedEstimator estimator_;
@@ -143,6 +151,26 @@ TEST_P(WindSnapshotOnEachRow, GoesOnWithTheSameBits) {
       ASSERT_EQ(used.numbers_at(tick), numbers) << "tick " << tick;
     }
     EXPECT_EQ(save_snapshot(fresh, kMadeOf), save_snapshot(saved, kMadeOf));
+  }
+}
+
+/// As after a restart with more sensors: while they are silent nothing changes, and then nothing jumps.
+TEST_P(WindSnapshotOnEachRow, GoesOnWithMoreSources) {
+  for (const std::size_t before : {1U, 2U, 3U}) {
+    WindChain saved(GetParam(), {}, before);
+    std::uint64_t tick = 0;
+    for (; tick < 15 * kTicks_hz; ++tick) saved.at(tick);
+    WindChain more(GetParam());
+    ASSERT_TRUE(load_snapshot(more, kMadeOf, save_snapshot(saved, kMadeOf)));
+    more.hear(before);
+    for (const std::uint64_t end = tick + 300; tick < end; ++tick) {
+      const std::vector<double> numbers = saved.numbers_at(tick);
+      const std::vector<double> with_more = more.numbers_at(tick);
+      ASSERT_EQ(with_more.size(), numbers.size());
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        ASSERT_NEAR(with_more[i], numbers[i], 1e-6) << "tick " << tick << ", number " << i << ", after " << before;
+    }
+    EXPECT_FALSE(load_snapshot(saved, kMadeOf, save_snapshot(more, kMadeOf))) << "fewer";
   }
 }
 
