@@ -234,8 +234,8 @@ TEST_F(ReloadTest, ItsEndDoesNotWaitForADiskThatHangs) {
   }
   EXPECT_THAT(reports_, IsEmpty());
   disk->answers.set_value();
-  const std::weak_ptr<Disk> is_left_with_the_thread = std::exchange(disk, nullptr);
-  while (!is_left_with_the_thread.expired()) std::this_thread::yield();
+  while (disk.use_count() > 1) std::this_thread::yield();
+  disk.reset();  // as the last owner: what the thread did is ordered before this
   EXPECT_TRUE(queue_.is_empty()) << "nobody is there who could be told";
 }
 
@@ -263,8 +263,8 @@ TEST_F(ReloadTest, AFileThatIsNotReadInTimeHasFailedAndTheNextRequestIsAnswered)
     EXPECT_FALSE(reload.is_under_way());
     disk->answers.set_value();
   }
-  const std::weak_ptr<HangingDisk> is_left_with_the_thread = std::exchange(disk, nullptr);
-  while (!is_left_with_the_thread.expired()) std::this_thread::yield();
+  while (disk.use_count() > 1) std::this_thread::yield();
+  disk.reset();  // as the last owner: what the thread did is ordered before this
   EXPECT_TRUE(queue_.is_empty()) << "the first comes too late";
   EXPECT_EQ(applied_.size(), 1U);
 }
