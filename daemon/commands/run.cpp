@@ -87,10 +87,9 @@ bool run_once(const RunOptions& options, const std::optional<std::filesystem::pa
     if (config.page_file.empty()) throw;
     spdlog::warn("what the page has set up is left out ({}): the daemon cannot be started with it: {}",
                  config.page_file, fault.what());
-    settings::Config own = settings::load_config(*options.config_file);
+    settings::Config own = options.config_without_page();
     own.page_trouble = fault.what();
-    daemon.emplace(options.address ? settings::listening_at(std::move(own), *options.address) : std::move(own),
-                   service);
+    daemon.emplace(own, service);
   }
   return daemon->run();
 }

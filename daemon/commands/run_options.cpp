@@ -54,7 +54,12 @@ settings::Config configuration_of(const std::optional<std::filesystem::path>& fi
 }
 
 settings::Config RunOptions::config() const {
-  settings::Config config = config_file ? settings::load_installation(*config_file) : settings::default_config();
+  settings::Config config = config_without_page();
+  return config_file ? settings::with_page_file(std::move(config), *config_file) : config;
+}
+
+settings::Config RunOptions::config_without_page() const {
+  settings::Config config = config_file ? settings::load_config(*config_file) : settings::default_config();
   return address ? settings::listening_at(std::move(config), *address) : config;
 }
 

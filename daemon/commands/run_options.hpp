@@ -23,8 +23,10 @@ struct RunOptions {
   /// The same with --connect instead of --listen: for a command that is a client of the daemon.
   void add_to_client(CLI::App& command);
 
-  /// The configuration given by them, or the default one. Throws ConfigError.
+  /// The configuration given by them, with what the page has set up, or the default one. Throws ConfigError.
   settings::Config config() const;
+  /// The same without what the page has set up.
+  settings::Config config_without_page() const;
 
  private:
   void add_common(CLI::App& command);

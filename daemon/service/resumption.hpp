@@ -1,7 +1,10 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/sensing/sensor_hub.hpp"

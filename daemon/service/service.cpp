@@ -322,12 +322,13 @@ class Service::Io {
     return settings::state_file(options_.config_file, "pairings.json");
   }
 
-  /// A recording that plays begins at rest: what it shows follows from the recording alone.
+  /// Empty where no service manager provides a folder: who starts the daemon by hand finds no new file beside his
+  /// configuration. A recording that plays begins at rest: what it shows follows from the recording alone.
   static std::filesystem::path motion_file(const settings::Config& config, const Options& options) {
     const bool plays =
         std::ranges::any_of(config.sensors, [](const auto& sensor) { return sensor.driver->plays_recordings; });
     if (!config.animation.resumes || plays || options.recorded_from) return {};
-    return settings::motion_file();
+    return settings::state_file({}, "motion.snapshot");
   }
   Motion motion() { return {hub_, shaper_, *animation_}; }
   void resume() {

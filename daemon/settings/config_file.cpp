@@ -77,10 +77,6 @@ std::filesystem::path state_file(const std::filesystem::path& config_file, std::
   return config_file.string() + '.' + std::string(name);
 }
 
-std::filesystem::path motion_file() {
-  return state_file({}, "motion.snapshot");
-}
-
 Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,
                                                       std::string_view new_text) {
   std::error_code error;

@@ -16,10 +16,6 @@ std::string absolute_path(const std::filesystem::path& file);
 /// otherwise CONFIG.NAME beside the configuration. Empty if there is neither.
 std::filesystem::path state_file(const std::filesystem::path& config_file, std::string_view name);
 
-/// Returns the file in which the motion outlives the daemon. Empty where no service manager provides a folder: who
-/// starts it by hand finds no new file beside his configuration.
-std::filesystem::path motion_file();
-
 /// Replaces the text of a configuration file, as a whole or not at all. The new text is checked first: it must parse,
 /// and every sensor that could be constructed from the old text can be constructed from it. The old text is kept as
 /// FILE.bak. Permissions stay, and a symbolic link keeps pointing at its file.

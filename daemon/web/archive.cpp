@@ -323,10 +323,14 @@ struct Archive::Shared {
 
   PageSetup setup() const { return {settings.configuration, settings.page, settings.taking_over}; }
 
+  /// What this program prints, for a request that waits for it.
+  ChildOutput printed_by(std::initializer_list<std::string> words) const {
+    return run_niced(Niceness::kAwaited, command(words), kMaxCheck, stop.get_token());
+  }
+
   http::Response drivers() {
     if (known_drivers.empty()) {
-      const ChildOutput output =
-          run_niced(Niceness::kAwaited, command({"sensors", "describe", "--json"}), kMaxCheck, stop.get_token());
+      const ChildOutput output = printed_by({"sensors", "describe", "--json"});
       if (std::string failure = failure_of(output); !failure.empty()) return busy(failure);
       known_drivers = for_the_page(output.printed);
     }
@@ -347,9 +351,7 @@ struct Archive::Shared {
   http::Response calibrations() const {
     if (settings.configuration.empty())
       return problem(404, "No file", "the daemon runs without a configuration file: nothing can be calibrated");
-    const ChildOutput output = run_niced(
-        Niceness::kAwaited, command({"calibrate", "list", "--config", settings.configuration.string(), "--json"}),
-        kMaxCheck, stop.get_token());
+    const ChildOutput output = printed_by({"calibrate", "list", "--config", settings.configuration.string(), "--json"});
     if (std::string failure = failure_of(output); !failure.empty()) return busy(failure);
     auto sensors = ordered_json::parse(output.printed, nullptr, false);
     return json_response({{"sensors", sensors.is_discarded() ? ordered_json::array() : std::move(sensors)}});
@@ -370,9 +372,7 @@ struct Archive::Shared {
   http::Response configuration() const {
     if (settings.configuration.empty())
       return problem(404, "No file", "the daemon runs without a configuration file; `yuragi describe` lists all keys");
-    const ChildOutput output =
-        run_niced(Niceness::kAwaited, command({"check-config", settings.configuration.string(), "--full", "--json"}),
-                  kMaxCheck, stop.get_token());
+    const ChildOutput output = printed_by({"check-config", settings.configuration.string(), "--full", "--json"});
     if (!output.end || output.end->signal != 0) return busy("the configuration was not read: " + failure_of(output));
     auto values = ordered_json::parse(output.printed, nullptr, false);
     ordered_json findings = ordered_json::array();

@@ -32,11 +32,11 @@ MAX_FRAMES_BETWEEN = 4
 
 
 class Run:
-    """A daemon, and the frames of it as {scene: joints}."""
+    """A daemon, and a client of its stream."""
 
-    def __init__(self, test, **options):
+    def __init__(self, test):
         self.program = test.enterContext(Program(YURAGI, "run", "--config", test.file, "--listen", "127.0.0.1:0",
-                                                 env={**os.environ, "STATE_DIRECTORY": test.state}, **options))
+                                                 env={**os.environ, "STATE_DIRECTORY": test.state}))
         self.connection = yuragi_client.Connection(self.program.address())
         test.addCleanup(self.connection.close)
         self.connection.send(yuragi_client.encode("Subscribe", protocol=yuragi_client.PROTOCOL, poses=True, client="resume_test.py"))

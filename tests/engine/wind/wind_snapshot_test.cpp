@@ -28,7 +28,7 @@ class WindChain {
  public:
   /// `sources`: how many of those that there are.
   explicit WindChain(SimdRow row, MonoTime begin = {}, std::size_t sources = kSources)
-      : sources_(sources),
+      : heard_(sources),
         begin_(begin),
         site_(std::make_shared<turbulence::SiteSpectrum>()),
         estimator_(sources, blend_settings(site_, sources), station_gusts()),
@@ -113,8 +113,7 @@ class WindChain {
     return reading;
   }
 
-  std::size_t sources_;
-  std::size_t heard_ = sources_;
+  std::size_t heard_;
   MonoTime begin_;
   std::shared_ptr<turbulence::SiteSpectrum> site_;
   blend::BlendedEstimator estimator_;
@@ -157,7 +156,7 @@ TEST_P(WindSnapshotOnEachRow, GoesOnWithTheSameBits) {
 /// Of numbers_at().
 constexpr std::size_t kBeforePlaces = 6;
 
-/// As after a restart with more sensors: while they are silent nothing changes, and then nothing jumps.
+/// As after a restart with more sensors: while they are silent, nothing changes.
 TEST_P(WindSnapshotOnEachRow, GoesOnWithMoreSources) {
   for (const std::size_t before : {1U, 2U, 3U}) {
     WindChain saved(GetParam(), {}, before);
