@@ -14,13 +14,19 @@ constexpr double kLiveWeight = 0.5;  // from here on the wind is the sensors' fo
 
 /// Enough places for every sensor, and no more: a tape takes half a megabyte.
 std::size_t most_pens(const settings::Config& config) {
+  if (config.wind.lead.is_in_company()) return wind::ground::WindStroke::kMaxPens;
   return std::min(wind::ground::WindStroke::kMaxPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
 }
 
 /// The scenes that the daemon begins with: at once as visible as they are to be.
 std::unique_ptr<SceneList> first_scenes(const settings::Config& config,
                                         const std::shared_ptr<const wind::turbulence::GustNoise>& gusts) {
-  SceneRoster roster{.generation = 0, .seed = config.seed, .gusts = gusts, .configs = config.scenes, .scenes = {}};
+  SceneRoster roster{.generation = 0,
+                     .seed = config.seed,
+                     .settles = config.wind.lead.is_in_company(),
+                     .gusts = gusts,
+                     .configs = config.scenes,
+                     .scenes = {}};
   for (std::size_t i = 0; i < config.scenes.size(); ++i) {
     roster.scenes.push_back(make_staged_scene(config, i, gusts));
     roster.scenes.back()->fade = Fade(config.scenes[i].is_shown);
@@ -69,12 +75,32 @@ void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::ui
     all_scenes += duration;
   }
   sharing_.took(all_scenes);
+  list.settle(dt_s);
 }
 
 void Animation::list_state(StatePass& pass) {
   assert(!change_);
   pass(tapes_, view_wind_, tick_);
   for (std::size_t i = 0; i < scenes_->size(); ++i) pass((*scenes_)[i]);
+}
+
+bool Animation::save_state(std::vector<std::uint8_t>& state, MonoTime now) {
+  if (change_) return false;
+  StatePass pass = StatePass::saving(state, now);
+  list_state(pass);
+  return true;
+}
+
+bool Animation::load_state(std::span<const std::uint8_t> state, MonoTime now) {
+  if (change_) return false;
+  StatePass check = StatePass::checking(state);
+  list_state(check);
+  if (check.problem() != StatePass::Problem::kNone) return false;
+  scenes_->keep_shown();
+  StatePass load = StatePass::loading(state, now);
+  list_state(load);
+  scenes_->read_opacities();
+  return true;
 }
 
 void Animation::cue(const SceneCue& cue) noexcept {

@@ -35,7 +35,8 @@ struct SceneCue {
 /// number of threads.
 class Animation {
  public:
-  /// `gusts`: of the wind that step() will be given.
+  /// `gusts`: of the wind that step() will be given. Of a configuration that leads or follows it has tapes for as many
+  /// places as a leader may have.
   Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts);
 
   /// Writes the wind onto the tapes, and advances every visible scene and every fade by dt_s. `ticks`: how many have
@@ -50,6 +51,13 @@ class Animation {
   /// carried out (is_changing()). Not realtime-safe.
   void list_state(StatePass& pass);
   bool is_changing() const noexcept { return change_ != nullptr; }
+
+  /// Saves that state: appends to `state`, and allocates nothing if that has room. `now`: the moment of the last step's
+  /// wind. False while a change is carried out.
+  bool save_state(std::vector<std::uint8_t>& state, MonoTime now);
+  /// Loads it between two steps; what is shown does not jump, if the animation settles(). False, and nothing changes,
+  /// while a change is carried out or if the bytes are not of these scenes. Allocates nothing.
+  bool load_state(std::span<const std::uint8_t> state, MonoTime now);
 
   /// Begins to exchange the scenes, of which the change was made. Not while another change is carried out.
   void begin_change(std::unique_ptr<SceneChange> change) noexcept;

@@ -31,11 +31,12 @@ constexpr std::size_t kWaitingOrders = 64;
 }  // namespace
 
 Loop::Loop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const drivers::sensor::Clock& clock,
-           double rate_hz)
+           double rate_hz, LedSteps* led)
     : animation_(animation),
       wind_(wind),
       clock_(clock),
       rate_hz_(rate_hz),
+      led_(led),
       orders_(kWaitingOrders),
       frame_ready_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (frame_ready_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
@@ -103,22 +104,20 @@ void Loop::run_ticks(const std::stop_token& stop) {
 }
 
 void Loop::tick(const TickSchedule::Tick& tick) {
-  // Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit.
   wind_.refresh();
-  const wind::ground::DrivingWind& wind = wind_.value();
-  const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kMaxStep_s);
   take_orders();
-  animation_.step(wind, dt_s, tick.skipped + 1);
+  const LedSteps::Stepped stepped = step(tick);
   if (auto finished = animation_.take_finished_change()) finished_.store(finished.release(), std::memory_order_release);
+  if (!stepped.is_new) return;
 
   // The wind is some milliseconds older than the frame, and with it the age of its newest reading.
   const Instant now = clock_.now();
-  wind::State state = wind.state;
+  wind::State state = *stepped.wind;
   if (state.live_weight > 0.0) state.reading_age_s += std::max(0.0, seconds(now.mono - state.time));
   const wire::FrameInfo info{.sequence = sequence_++,
-                             .tick = tick.number,
+                             .tick = stepped.number,
                              .time_s = static_cast<double>(tick.number) / rate_hz_,
-                             .utc_ns = now.utc.time_since_epoch().count(),
+                             .utc_ns = stepped.utc.value_or(now.utc).time_since_epoch().count(),
                              .wind = state};
   const std::span<const std::uint8_t> frame = animation_.encode(info);
   PublishedFrame& published = frames_.writable();
@@ -130,6 +129,16 @@ void Loop::tick(const TickSchedule::Tick& tick) {
   std::ranges::copy(opacities.first(published.scene_count), published.opacities.begin());
   frames_.publish();
   wake_io_thread();
+}
+
+/// Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit; those of a leader
+/// one by one.
+LedSteps::Stepped Loop::step(const TickSchedule::Tick& tick) {
+  const wind::ground::DrivingWind& wind = wind_.value();
+  const std::uint64_t periods = tick.skipped + 1;
+  if (led_ != nullptr) return led_->step(animation_, wind, clock_.now().mono, periods);
+  animation_.step(wind, std::min(static_cast<double>(periods) / rate_hz_, kMaxStep_s), periods);
+  return {.is_new = true, .number = tick.number, .utc = {}, .wind = &wind.state};
 }
 
 /// After the wind was taken: the I/O thread publishes wind for new scenes after the change.

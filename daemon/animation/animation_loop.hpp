@@ -10,6 +10,7 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/duration_histogram.hpp"
+#include "daemon/animation/led_steps.hpp"
 #include "daemon/animation/running_mean.hpp"
 #include "daemon/animation/tick_schedule.hpp"
 #include "drivers/sensor/clock.hpp"
@@ -51,10 +52,10 @@ struct PublishedFrame {
 /// the scenes through a ring, and an eventfd wakes the I/O thread.
 class Loop {
  public:
-  /// `wind` must outlive the loop and is written by the I/O thread. The clock must be the system's: the loop sleeps on
-  /// CLOCK_MONOTONIC.
+  /// `wind` must outlive the loop and is written by the I/O thread, and so must `led`, by which its ticks have numbers
+  /// (null: they count from 0). The clock must be the system's: the loop sleeps on CLOCK_MONOTONIC.
   Loop(Animation& animation, Latest<wind::ground::DrivingWind>& wind, const drivers::sensor::Clock& clock,
-       double rate_hz);
+       double rate_hz, LedSteps* led = nullptr);
   ~Loop();
 
   Loop(const Loop&) = delete;
@@ -99,12 +100,14 @@ class Loop {
   void run_ticks(const std::stop_token& stop);
   void wake_io_thread() noexcept;
   void tick(const TickSchedule::Tick& tick);
+  LedSteps::Stepped step(const TickSchedule::Tick& tick);
   void take_orders();
 
   Animation& animation_;
   Latest<wind::ground::DrivingWind>& wind_;
   const drivers::sensor::Clock& clock_;
   double rate_hz_;
+  LedSteps* led_;
   std::uint64_t sequence_ = 0;
   Latest<PublishedFrame> frames_;
   SpscRing<Order> orders_;

@@ -72,6 +72,7 @@ std::unique_ptr<SceneChange> make_scene_change(const SceneRoster& present, const
   change->fade_s = fade_s;
   auto roster = std::make_shared<SceneRoster>();
   roster->seed = next.seed;
+  roster->settles = present.settles;
   roster->gusts = present.gusts;
   roster->configs = next.scenes;
 

@@ -42,6 +42,7 @@ SceneList::SceneList(std::shared_ptr<const SceneRoster> roster, std::span<const 
     rest.push_back(pose::rest_pose(scene.skeleton()));
   }
   opacities_.resize(entries_.size());
+  if (roster_->settles) settling_.emplace(skeletons_);
   std::vector<const pose::Pose*> rest_poses;
   rest_poses.reserve(rest.size());
   for (const pose::Pose& pose : rest) rest_poses.push_back(&pose);

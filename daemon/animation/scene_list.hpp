@@ -3,12 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "daemon/animation/fade.hpp"
 #include "daemon/animation/running_mean.hpp"
+#include "daemon/animation/settling_poses.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/wire/wire.hpp"
@@ -30,6 +32,7 @@ struct StagedScene {
 struct SceneRoster {
   std::uint64_t generation = 0;  ///< of the list of these scenes
   std::uint64_t seed = 0;
+  bool settles = false;  ///< its lists have memory to hide that another state is loaded (SettlingPoses)
   std::shared_ptr<const wind::turbulence::GustNoise> gusts;
   std::vector<settings::SceneConfig> configs;
   std::vector<std::shared_ptr<StagedScene>> scenes;  ///< one for each of configs
@@ -71,9 +74,20 @@ class SceneList {
     for (std::size_t i = 0; i < entries_.size(); ++i) opacities_[i] = entries_[i].staged->fade.opacity();
   }
 
+  /// Call it before another state of the scenes is loaded: what is shown does not jump.
+  void keep_shown() noexcept {
+    if (settling_) settling_->keep(poses_, opacities_);
+  }
+  /// Call it after each step.
+  void settle(double dt_s) noexcept {
+    if (settling_) settling_->advance(poses_, opacities_, dt_s);
+  }
+
   /// The frame of the present poses, size prefix included; valid until the next call.
   std::span<const std::uint8_t> encode(const wire::FrameInfo& info) {
-    return encoder_.encode(info, skeletons_, poses_, opacities_);
+    if (!settling_ || !settling_->is_settling()) return encoder_.encode(info, skeletons_, poses_, opacities_);
+    settling_->show(poses_, opacities_);
+    return encoder_.encode(info, skeletons_, settling_->poses(), settling_->opacities());
   }
   /// The size of a frame in which every scene is visible, which is the largest.
   std::size_t largest_frame_bytes() const noexcept { return largest_frame_bytes_; }
@@ -91,6 +105,7 @@ class SceneList {
   std::vector<const pose::Skeleton*> skeletons_;
   std::vector<const pose::Pose*> poses_;
   std::vector<float> opacities_;
+  std::optional<SettlingPoses> settling_;
   wire::FrameEncoder encoder_;
   std::size_t largest_frame_bytes_ = 0;
   std::array<wire::Bytes, 3> rooms_;

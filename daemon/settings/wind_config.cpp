@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "daemon/settings/site_octaves.hpp"
+#include "engine/base/address.hpp"
 #include "engine/base/fields.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 
@@ -21,6 +23,36 @@ struct WindTable {
 
 auto of_wind(auto member) {
   return member_of(&WindTable::wind, member);
+}
+
+auto of_lead(auto member) {
+  return member_of(&WindTable::wind, &WindConfig::lead, member);
+}
+
+/// "nats://one:4222, nats://two:4222".
+Result<std::vector<std::string>, Failure> servers_of(const std::string& text) {
+  std::vector<std::string> servers;
+  std::istringstream words(text);
+  for (std::string server; std::getline(words >> std::ws, server, ',');) {
+    server.erase(server.find_last_not_of(' ') + 1);
+    const std::size_t begin = server.find("://");
+    const std::string scheme = server.substr(0, begin);
+    if (begin == std::string::npos || (scheme != "nats" && scheme != "tls"))
+      return Failure{"a server is nats://HOST:PORT or tls://HOST:PORT, several with commas between them"};
+    if (const auto address = parse_address(server.substr(begin + 3)); !address) return address.error();
+    servers.push_back(std::move(server));
+  }
+  return servers;
+}
+
+/// A word of a subject of NATS, or several with dots between them.
+Result<std::string, Failure> channel_of(const std::string& text) {
+  const bool is_word =
+      !text.empty() && text.front() != '.' && text.back() != '.' && text.find("..") == std::string::npos &&
+      text.size() <= 100 &&
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") == std::string::npos;
+  if (!is_word) return Failure{"a channel has letters, digits, - and _, with dots between its words: \"museum.roof\""};
+  return {boost::system::in_place_value, text};
 }
 
 std::optional<double> length_unless_0(double length_m) {
@@ -118,6 +150,41 @@ const Fields<WindTable>& wind_fields() {
         .max = 86400.0,
         .help = "for how long every sensor must have been silent before it is played"},
        &WindTable::fallback_after_s},
+      {{.name = "lead",
+        .default_value = std::string{},
+        .help = "other daemons move in this one's wind: the NATS servers, one after the other tried, that pass it on "
+                "(\"nats://10.0.0.5:4222, nats://10.0.0.6:4222\"); empty: none. Together with follow: a stand-by, "
+                "which leads while no other leader is heard"},
+       of_lead(&LeadConfig::lead),
+       servers_of},
+      {{.name = "follow",
+        .default_value = std::string{},
+        .help = "this daemon moves in the wind of one that leads, by way of these NATS servers; with the same scenes "
+                "it has the same poses. While the leader is silent its own sensors are used; empty: always"},
+       of_lead(&LeadConfig::follow),
+       servers_of},
+      {{.name = "delay",
+        .unit = "s",
+        .default_value = 0.3,
+        .min = 0.05,
+        .max = 5.0,
+        .help = "from a tick of the leader's wind to its playing, on the leader's walls and on all others: a tick that "
+                "is lost on the way can be asked for again meanwhile. The same for all, for walls in step"},
+       of_lead(&LeadConfig::delay_s)},
+      {{.name = "channel",
+        .default_value = std::string("wind"),
+        .help = "how the subjects at the NATS server begin: another one for each leader"},
+       of_lead(&LeadConfig::channel),
+       channel_of},
+      {{.name = "credentials",
+        .default_value = std::string{},
+        .help = "a file with what the NATS server knows this daemon by: NAME:PASSWORD, or the seed of an nkey; empty: "
+                "nothing. Only its owner may be able to read it"},
+       of_lead(&LeadConfig::credentials)},
+      {{.name = "authorities",
+        .default_value = std::string{},
+        .help = "a file with the certificates (PEM) by which a tls:// server is believed; empty: the system's"},
+       of_lead(&LeadConfig::authorities)},
   };
   return kFields;
 }

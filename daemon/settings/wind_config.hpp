@@ -21,6 +21,18 @@ struct FallbackConfig {
   drivers::sensor::StatedValue value{};  ///< what the recorded speeds are (RecordedSource)
 };
 
+/// [wind] lead and follow: one wind for several daemons, by way of a NATS server.
+struct LeadConfig {
+  std::vector<std::string> lead, follow;  ///< servers, "nats://HOST:PORT" or "tls://HOST:PORT"; empty: not
+  double delay_s = 0.0;                   ///< from the making of a tick to its playing
+  std::string channel = {};               ///< how the leader's subjects begin
+  std::string credentials = {};           ///< a file; empty: none
+  std::string authorities = {};           ///< a file of certificates, PEM; empty: the system's
+
+  /// Returns true if its ticks have numbers, which other daemons know.
+  bool is_in_company() const noexcept { return !lead.empty() || !follow.empty(); }
+};
+
 /// The least integral length that is assumed.
 inline constexpr double kMinGusts_m = 1.0;
 
@@ -38,6 +50,7 @@ struct WindConfig {
   double return_after_s = 0.0;                ///< blend::Settings::return_after_s
   bool has_relative_gains = true;             ///< sensors that are compared are levelled (GroupGains)
   std::optional<FallbackConfig> fallback{};   ///< none: the default wind while every sensor is silent
+  LeadConfig lead{};
 
   /// Integral length of the default wind's gusts, m: default_length_m, or 57, as over open land at a height of 10 m.
   double gust_length_m() const noexcept;

@@ -118,6 +118,8 @@ const std::map<std::string, std::string>& lines_of_choosy_keys() {
       {"http.readers", "token_file = 'a'\nreaders = 'token'"},
       {"http.key", "certificate = 'a'\nkey = 'b'"},
       {"wind.site_octaves", "site_octaves = '1 2'"},
+      {"wind.lead", "lead = 'nats://a:1'"},
+      {"wind.follow", "follow = 'tls://a:1, nats://b:2'"},
       {"shaping.site_strong", "site_median = 3.0\nsite_strong = 4.0"},
       {"shaping.hours", "hours = '10:00-18:00'"},
       {"shaping.zone", "zone = 'Asia/Tokyo'"},
