@@ -46,6 +46,7 @@ test_packages=(
   puredata-core python3-yaml                              # run and read examples
   avahi-daemon avahi-utils dbus-daemon iproute2           # services that a network's programs find, in networks of a test's own
   nginx-light caddy                                       # proxies in front of the page
+  libnats-dev nats-server                                 # the link between daemons, and its servers
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
@@ -177,7 +178,7 @@ install_missing() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
   # Their packages start servers that listen to every network; the tests start their own.
   local pair service
-  for pair in ola:olad nginx-light:nginx caddy:caddy; do
+  for pair in ola:olad nginx-light:nginx caddy:caddy nats-server:nats-server; do
     service=${pair#*:}
     if [[ " ${missing[*]} " = *" ${pair%:*} "* ]] && [ -d /run/systemd/system ]; then
       "${as_root[@]}" systemctl disable --now "$service" || echo "setup: $service could not be disabled: systemctl disable --now $service"

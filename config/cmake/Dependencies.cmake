@@ -47,6 +47,10 @@ if(YURAGI_SANITIZE)
   endforeach()
 endif()
 
+if(YURAGI_NATS)
+  pkg_check_modules(NATS REQUIRED IMPORTED_TARGET libnats)
+endif()
+
 if(YURAGI_VIEWER)
   find_package(glfw3 REQUIRED)
   find_package(glm REQUIRED)

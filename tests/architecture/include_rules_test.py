@@ -42,7 +42,7 @@ ALLOWED = {
 CLOCK_READ = re.compile(r"\b(?:steady|system|high_resolution|utc)_clock::now\b")
 
 # Of these a driver's file may wrap one.
-C_LIBRARIES = "curl modbus hidapi libusb portaudio sqlite3.h mosquitto.h lo umockdev.h".split()
+C_LIBRARIES = "curl modbus hidapi libusb portaudio sqlite3.h mosquitto.h nats lo umockdev.h".split()
 
 # The operating system's own headers.
 POSIX = set(

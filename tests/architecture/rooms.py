@@ -23,6 +23,7 @@ HEADERS = {
     "PkgConfig::LIBMODBUS": "modbus",
     "PkgConfig::LIBUSB": "libusb",
     "PkgConfig::MOSQUITTO": "mosquitto.h",
+    "PkgConfig::NATS": "nats",
     "PkgConfig::PNG": "png.h",
     "PkgConfig::PORTAUDIO": "portaudio",
     "PkgConfig::PROMETHEUS": "prometheus",
