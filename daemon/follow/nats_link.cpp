@@ -25,6 +25,7 @@
 #include <nats/nats.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <openssl/crypto.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
@@ -115,6 +116,13 @@ std::string explain(const std::string& server, natsStatus status, const std::str
     default:
       return fmt::format("lost the connection to {} ({}): check the network, and that it is running", server, text);
   }
+}
+
+/// What libnats and OpenSSL keep for this thread. Nothing is left to do for them when the thread ends, so that whoever
+/// waits for its last word (Shared is destroyed) may end the program.
+void release_thread_memory() {
+  nats_ReleaseThreadMemory();
+  OPENSSL_thread_stop();
 }
 
 void check(natsStatus status, const std::string& what) {
@@ -374,8 +382,9 @@ struct NatsLink::Shared {
   const platform::Descriptor event{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   std::atomic<int> hanging_attempts = 0;
 
+  const std::function<void()> on_arrival;
   std::mutex arrival_mutex;  ///< held while on_arrival runs
-  std::function<void()> on_arrival;
+  bool is_arrival_over = false;
 
   mutable std::mutex mutex;  ///< of all that follows
   std::condition_variable changed;
@@ -460,7 +469,7 @@ class NatsLink::Worker {
         }
       });
       connection.reset();
-      nats_ReleaseThreadMemory();
+      release_thread_memory();
       --shared->hanging_attempts;
       const std::lock_guard lock(attempt->mutex);
       attempt->result = std::move(result);
@@ -543,7 +552,7 @@ class NatsLink::Worker {
     });
     if (!has_come) return;
     const std::lock_guard lock(shared_->arrival_mutex);
-    if (shared_->on_arrival) contain("a message of NATS", shared_->on_arrival);
+    if (shared_->on_arrival && !shared_->is_arrival_over) contain("a message of NATS", shared_->on_arrival);
   }
 
   bool is_left() const {
@@ -569,7 +578,6 @@ class NatsLink::Worker {
       shared_->outgoing.clear();
     }
     connection_.reset();
-    nats_ReleaseThreadMemory();
   }
 
   void note_steadiness() {
@@ -606,6 +614,7 @@ NatsLink::NatsLink(NatsSettings settings, std::vector<std::string> subjects, std
     : shared_(std::make_shared<Shared>(std::move(settings), std::move(subjects), std::move(on_arrival))) {
   std::thread([shared = shared_] {
     contain("the link to NATS", [&] { Worker(shared).run(); });
+    release_thread_memory();
     const std::lock_guard lock(shared->mutex);
     shared->is_over = true;
     shared->changed.notify_all();
@@ -615,7 +624,7 @@ NatsLink::NatsLink(NatsSettings settings, std::vector<std::string> subjects, std
 NatsLink::~NatsLink() {
   {
     const std::lock_guard lock(shared_->arrival_mutex);
-    shared_->on_arrival = nullptr;
+    shared_->is_arrival_over = true;
   }
   std::unique_lock lock(shared_->mutex);
   shared_->is_ending = true;

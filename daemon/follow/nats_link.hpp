@@ -58,7 +58,8 @@ class NatsLink {
   };
 
   /// `subjects`: what is subscribed to, besides inbox(). `on_arrival`: called on another thread after messages were
-  /// queued; it must be short, may throw, and must not destroy the link. It is not called after the destructor.
+  /// queued; it must be short, may throw, and must not destroy the link. It is not called after the destructor, and
+  /// destroyed when the link's last thread ends.
   NatsLink(NatsSettings settings, std::vector<std::string> subjects, std::function<void()> on_arrival);
 
   /// Sends what the server takes at once, and waits 0.25 s at most: a thread that hangs is left behind.
