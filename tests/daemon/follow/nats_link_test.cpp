@@ -77,7 +77,7 @@ class Peer {
   NatsLink::State until(const Condition& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
-      const NatsLink::State state = link_->state();
+      NatsLink::State state = link_->state();
       if (condition(state)) return state;
       wait();
     }
@@ -179,7 +179,7 @@ TEST(NatsLinkTest, ASnapshotInChunksArrivesWholeAndInOrder) {
   Peer sender({server.address()}, {}), reader({server.address()}, {"y.chunk", "y.hello"});
   connect(sender, reader, "y.hello");
   constexpr int kChunks = 15;
-  std::vector<std::uint8_t> chunk(128 * 1024);
+  std::vector<std::uint8_t> chunk(std::size_t{128} * 1024);
   for (int i = 0; i < kChunks; ++i) {
     std::iota(chunk.begin(), chunk.end(), static_cast<std::uint8_t>(i));
     sender.link().publish("y.chunk", chunk);
@@ -216,7 +216,7 @@ TEST(NatsLinkTest, AServerThatHangsIsLeft) {
 
 /// Publishes more than sockets hold.
 void flood(NatsLink& link) {
-  const std::vector<std::uint8_t> chunk(128 * 1024);
+  const std::vector<std::uint8_t> chunk(std::size_t{128} * 1024);
   const std::uint64_t lost = link.state().lost;
   while (link.state().lost == lost) link.publish("y.flood", chunk);
 }
