@@ -1,7 +1,6 @@
-// libnats 3.4.1, read and written by the link's thread as libnats's "event loop": then libnats starts no thread that
-// touches our data, and no write waits. Its own way has no time-out for a write, and hangs with it for as long as the
-// socket is full. What can still hang are a look-up of a name and a TLS handshake, for ever: so each attempt to connect
-// has a thread of its own, which is left behind then.
+// libnats 3.4.1. The link's thread is its "event loop": it reads and writes the socket without waiting, and libnats
+// starts no thread that touches our data. A name look-up and a TLS handshake of libnats have no time limit. So each
+// attempt to connect has a thread of its own, which is left behind if it hangs.
 #include "daemon/follow/nats_link.hpp"
 
 #include <algorithm>
@@ -25,6 +24,7 @@
 #include <nats/nats.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <openssl/crypto.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/eventfd.h>
@@ -54,8 +54,8 @@ constexpr auto kMaxRetry = std::chrono::seconds(5);
 constexpr auto kSteady = std::chrono::seconds(5);  ///< a connection that lasts so long is a good one
 constexpr auto kFarewell = std::chrono::milliseconds(250);
 constexpr int kHousekeeping_ms = 1000;
-constexpr int kMaxBuffered = 256 * 1024;                       ///< bytes in libnats; more waits in the queue
-constexpr std::size_t kMaxWaitingBytes = 64U * 1024U * 1024U;  /// of one queue
+constexpr int kMaxBuffered = 256 * 1024;                                 ///< bytes in libnats; more waits in the queue
+constexpr std::size_t kMaxWaitingBytes = std::size_t{64} * 1024 * 1024;  ///< of one queue
 
 std::string random_inbox() {
   std::random_device random;
@@ -64,7 +64,7 @@ std::string random_inbox() {
   return inbox;
 }
 
-/// The server without user and password, which no log shows.
+/// Returns the server without user and password, which no log shows.
 std::string shown(const std::string& server) {
   const std::size_t scheme = server.find("://");
   const std::size_t begin = scheme == std::string::npos ? 0 : scheme + 3;
@@ -80,13 +80,13 @@ std::string host_of(const std::string& server) {
   return host.substr(0, host.find(':'));
 }
 
-/// One with a space or a control character could contain a command to the server.
+/// Returns true if a subject can be sent: a space or a control character could begin a command to the server.
 bool is_subject(std::string_view subject) {
   return !subject.empty() &&
          std::ranges::all_of(subject, [](char character) { return character > ' ' && character != 0x7f; });
 }
 
-/// libnats's text of the last error of this thread, without the place in its sources.
+/// Returns libnats's text of the last error of this thread, without the place in its sources.
 std::string last_error() {
   natsStatus status = NATS_OK;
   const char* const text = nats_GetLastError(&status);
@@ -98,7 +98,7 @@ std::string last_error() {
   return error;
 }
 
-/// What is wrong with a connection, and what to do.
+/// Returns what is wrong with a connection, and what to do.
 std::string explain(const std::string& server, natsStatus status, const std::string& text) {
   switch (status) {
     case NATS_CONNECTION_AUTH_FAILED:
@@ -115,6 +115,13 @@ std::string explain(const std::string& server, natsStatus status, const std::str
     default:
       return fmt::format("lost the connection to {} ({}): check the network, and that it is running", server, text);
   }
+}
+
+/// Releases what libnats and OpenSSL keep for this thread. They then do nothing more when the thread ends, which may be
+/// at the same time as the end of the program.
+void release_thread_memory() {
+  nats_ReleaseThreadMemory();
+  OPENSSL_thread_stop();
 }
 
 void check(natsStatus status, const std::string& what) {
@@ -186,10 +193,10 @@ class Connection {
     if (!settings.credentials.empty()) set_credentials(settings.credentials);
   }
 
-  /// Uses no socket any more, and never waits for the server.
+  /// Never waits for the server.
   ~Connection() {
     if (connection_ != nullptr) {
-      // Unless nothing waits to be sent, libnats would wait for the server.
+      // If something is not yet sent, libnats would wait 0.5 s for the server. A failed write prevents this.
       if (natsConnection_Buffered(connection_) > 0) {
         shut_down();
         natsConnection_ProcessWriteEvent(connection_);
@@ -233,7 +240,7 @@ class Connection {
     if ((waits[0].revents & ~POLLOUT) != 0) natsConnection_ProcessReadEvent(connection_);
   }
 
-  /// Passes what turn() has read to `take`, which takes a natsMsg.
+  /// Calls `take` with each message (natsMsg) that turn() has read.
   template <class Take>
   void take_messages(const Take& take) {
     for (const auto& subscription : subscriptions_) {
@@ -247,12 +254,12 @@ class Connection {
 
   bool is_closed() const { return natsConnection_IsClosed(connection_); }
 
-  /// What the server did not permit, or why the connection is closed; empty: nothing.
+  /// Returns what the server did not permit, or why the connection is closed; otherwise an empty text.
   std::string trouble() const {
     const char* text = nullptr;
     const natsStatus status = natsConnection_GetLastError(connection_, &text);
     if (status == NATS_OK) return is_closed() ? explain(shown(server_), NATS_CONNECTION_CLOSED, "closed") : "";
-    // Of an older error's text, if the connection was lost without a word of the server.
+    // The text can be that of an earlier error, if the server reported nothing when the connection was lost.
     std::string error = status == NATS_ERR || status == NATS_NOT_PERMITTED ? text : natsStatus_GetText(status);
     make_printable(error);
     if (status != NATS_NOT_PERMITTED) return explain(shown(server_), status, error);
@@ -265,7 +272,7 @@ class Connection {
     if (const int socket = socket_; socket >= 0) ::shutdown(socket, SHUT_RDWR);
   }
 
-  /// What was sent reaches the server, although the connection is destroyed. libnats would have it discarded.
+  /// Lets sent messages reach the server after the connection is destroyed. Without, they are discarded then.
   void linger() const noexcept {
     const struct linger none {};
     setsockopt(socket_, SOL_SOCKET, SO_LINGER, &none, sizeof none);
@@ -319,10 +326,10 @@ class Connection {
     auto* const connection = static_cast<Connection*>(self);
     *user = self;
     close_on_exec(socket);
-    // One of our own, since libnats closes its socket at times that others do not know.
+    // A descriptor of our own: shut_down() on another thread never meets one that libnats has closed.
     connection->socket_ = fcntl(socket, F_DUPFD_CLOEXEC, 0);
     if (connection->socket_ < 0) return NATS_SYS_ERROR;
-    // A machine that vanished is noticed by the system.
+    // The system notices a machine that vanished.
     const int yes = 1, idle_s = 5, interval_s = 1, count = 5;
     const unsigned unacknowledged_ms = 10'000;
     setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &yes, sizeof yes);
@@ -374,8 +381,9 @@ struct NatsLink::Shared {
   const platform::Descriptor event{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   std::atomic<int> hanging_attempts = 0;
 
+  const std::function<void()> on_arrival;
   std::mutex arrival_mutex;  ///< held while on_arrival runs
-  std::function<void()> on_arrival;
+  bool is_arrival_over = false;
 
   mutable std::mutex mutex;  ///< of all that follows
   std::condition_variable changed;
@@ -460,7 +468,7 @@ class NatsLink::Worker {
         }
       });
       connection.reset();
-      nats_ReleaseThreadMemory();
+      release_thread_memory();
       --shared->hanging_attempts;
       const std::lock_guard lock(attempt->mutex);
       attempt->result = std::move(result);
@@ -543,7 +551,7 @@ class NatsLink::Worker {
     });
     if (!has_come) return;
     const std::lock_guard lock(shared_->arrival_mutex);
-    if (shared_->on_arrival) contain("a message of NATS", shared_->on_arrival);
+    if (shared_->on_arrival && !shared_->is_arrival_over) contain("a message of NATS", shared_->on_arrival);
   }
 
   bool is_left() const {
@@ -555,8 +563,9 @@ class NatsLink::Worker {
   bool was_left() {
     const std::lock_guard lock(shared_->mutex);
     if (!std::exchange(shared_->is_leaving, false)) return false;
-    shared_->state.trouble = "left " + shared_->state.server + ", which sent nothing";
+    shared_->state.trouble = "gave up " + shared_->state.server + ", because nothing came from it in time";
     failures_ = 0;
+    is_steady_ = false;
     return true;
   }
 
@@ -569,7 +578,6 @@ class NatsLink::Worker {
       shared_->outgoing.clear();
     }
     connection_.reset();
-    nats_ReleaseThreadMemory();
   }
 
   void note_steadiness() {
@@ -606,6 +614,7 @@ NatsLink::NatsLink(NatsSettings settings, std::vector<std::string> subjects, std
     : shared_(std::make_shared<Shared>(std::move(settings), std::move(subjects), std::move(on_arrival))) {
   std::thread([shared = shared_] {
     contain("the link to NATS", [&] { Worker(shared).run(); });
+    release_thread_memory();
     const std::lock_guard lock(shared->mutex);
     shared->is_over = true;
     shared->changed.notify_all();
@@ -615,7 +624,7 @@ NatsLink::NatsLink(NatsSettings settings, std::vector<std::string> subjects, std
 NatsLink::~NatsLink() {
   {
     const std::lock_guard lock(shared_->arrival_mutex);
-    shared_->on_arrival = nullptr;
+    shared_->is_arrival_over = true;
   }
   std::unique_lock lock(shared_->mutex);
   shared_->is_ending = true;

@@ -28,16 +28,16 @@ struct NatsSettings {
   /// A file with `user:password` in one line, or with the seed of an nkey ("SU..."); empty: no credentials. It is read
   /// again before each connection, and refused if everybody can read it.
   std::filesystem::path credentials;
-  std::filesystem::path authorities;           ///< certificates that are trusted (PEM), for TLS; empty: the system's
-  std::size_t max_message_bytes = 256 * 1024;  ///< longer messages are dropped and counted, both ways
-  std::size_t max_waiting = 4096;              ///< messages that may wait, each way; others are dropped and counted
+  std::filesystem::path authorities;  ///< certificates that are trusted (PEM), for TLS; empty: the system's
+  std::size_t max_message_bytes = std::size_t{256} * 1024;  ///< longer messages are dropped and counted, both ways
+  std::size_t max_waiting = 4096;  ///< messages that may wait, each way; others are dropped and counted
 };
 
 /// A connection to one of several NATS servers, on a thread of its own, which connects again for ever. No function
 /// waits for the network. A lost connection is replaced by the next server at once; when all servers have failed in
-/// turn, it waits 0.25 s, later up to 5 s. A server that hangs is not noticed here: whoever knows how often messages
-/// have to come calls leave_server(). A machine that vanished is noticed after 10 s. A trouble is logged once, and once
-/// that it is over.
+/// turn, it waits 0.25 s, later up to 5 s. A server that hangs is not noticed here: its user, who knows how often
+/// messages have to come, calls leave_server(). A machine that vanished is noticed after 10 s. A trouble is logged
+/// once, and once that it is over.
 ///
 /// libnats sends and receives TLS by busy waiting while a record is incomplete: a TLS connection that is stuck costs a
 /// processor until leave_server() or the destructor ends it.
@@ -58,7 +58,8 @@ class NatsLink {
   };
 
   /// `subjects`: what is subscribed to, besides inbox(). `on_arrival`: called on another thread after messages were
-  /// queued; it must be short, may throw, and must not destroy the link. It is not called after the destructor.
+  /// queued; it must be short, may throw, and must not destroy the link. It is not called after the destructor, and
+  /// destroyed when the link's last thread ends.
   NatsLink(NatsSettings settings, std::vector<std::string> subjects, std::function<void()> on_arrival);
 
   /// Sends what the server takes at once, and waits 0.25 s at most: a thread that hangs is left behind.

@@ -12,11 +12,13 @@ struct NatsLink::Shared {
   State state;
 };
 
+// NOLINTBEGIN(performance-unnecessary-value-param): the parameters of the other link
 NatsLink::NatsLink(NatsSettings /*settings*/, std::vector<std::string> /*subjects*/,
                    std::function<void()> /*on_arrival*/)
     : shared_(std::make_shared<Shared>()) {
   shared_->state.trouble = refusal().value();
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 NatsLink::~NatsLink() = default;
 

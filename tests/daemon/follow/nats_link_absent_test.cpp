@@ -12,7 +12,7 @@ namespace {
 TEST(NatsLinkAbsentTest, ReportsHowToBuildItAndLosesWhatIsPublished) {
   const char* const reason = "this build has no NATS (cmake -D YURAGI_NATS=ON, libnats-dev)";
   EXPECT_EQ(NatsLink::refusal(), reason);
-  NatsLink link({.servers = {"nats://127.0.0.1:4222"}}, {"a"}, [] {});
+  NatsLink link(NatsSettings(), {"a"}, [] {});
   const std::array<std::uint8_t, 2> bytes{1, 2};
   link.publish("a", bytes);
   link.leave_server();

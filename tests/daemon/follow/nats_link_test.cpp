@@ -6,11 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -30,30 +33,55 @@ std::vector<std::uint8_t> bytes_of(std::string_view text) {
   return {text.begin(), text.end()};
 }
 
+NatsSettings settings_of(std::vector<std::string> servers, std::filesystem::path credentials = {},
+                         std::filesystem::path authorities = {}) {
+  NatsSettings settings;
+  settings.servers = std::move(servers);
+  settings.name = "test";
+  settings.credentials = std::move(credentials);
+  settings.authorities = std::move(authorities);
+  return settings;
+}
+
 /// A link, and what it has received.
 class Peer {
  public:
-  Peer(NatsSettings settings, std::vector<std::string> subjects)
-      : link_(std::move(settings), std::move(subjects), [this] {
-          const std::lock_guard lock(mutex_);
-          has_come_ = true;
-          come_.notify_all();
-        }) {}
+  Peer(NatsSettings settings, std::vector<std::string> subjects) {
+    // It is destroyed with the last of the link's threads.
+    const std::shared_ptr<void> end(nullptr, [this](void*) {
+      const std::lock_guard lock(mutex_);
+      has_ended_ = true;
+      come_.notify_all();
+    });
+    link_.emplace(std::move(settings), std::move(subjects), [this, end] {
+      const std::lock_guard lock(mutex_);
+      has_come_ = true;
+      come_.notify_all();
+    });
+  }
   Peer(std::vector<std::string> servers, std::vector<std::string> subjects)
-      : Peer(NatsSettings{.servers = std::move(servers), .name = "test"}, std::move(subjects)) {}
+      : Peer(settings_of(std::move(servers)), std::move(subjects)) {}
 
-  NatsLink& link() { return link_; }
+  ~Peer() {
+    link_.reset();
+    std::unique_lock lock(mutex_);
+    come_.wait(lock, [this] { return has_ended_; });
+  }
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  NatsLink& link() { return *link_; }
 
   /// Waits for a state. Only a hang takes longer.
   template <class Condition>
   NatsLink::State until(const Condition& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
-      const NatsLink::State state = link_.state();
+      NatsLink::State state = link_->state();
       if (condition(state)) return state;
       wait();
     }
-    throw std::runtime_error("the state does not come; trouble: " + link_.state().trouble);
+    throw std::runtime_error("the state does not come; trouble: " + link_->state().trouble);
   }
   NatsLink::State until_connected() {
     return until([](const NatsLink::State& state) { return state.is_connected; });
@@ -73,10 +101,10 @@ class Peer {
         if (message.subject == subject) return message;
       }
       meanwhile();
-      messages_ = link_.received();
+      messages_ = link_->received();
       if (messages_.empty()) wait();
     }
-    throw std::runtime_error("no message of " + subject + "; trouble: " + link_.state().trouble);
+    throw std::runtime_error("no message of " + subject + "; trouble: " + link_->state().trouble);
   }
 
  private:
@@ -88,9 +116,9 @@ class Peer {
 
   std::mutex mutex_;
   std::condition_variable come_;
-  bool has_come_ = false;
+  bool has_come_ = false, has_ended_ = false;
   std::vector<NatsMessage> messages_;
-  NatsLink link_;
+  std::optional<NatsLink> link_;
 };
 
 /// Waits until messages of `from` arrive at `to`.
@@ -151,7 +179,7 @@ TEST(NatsLinkTest, ASnapshotInChunksArrivesWholeAndInOrder) {
   Peer sender({server.address()}, {}), reader({server.address()}, {"y.chunk", "y.hello"});
   connect(sender, reader, "y.hello");
   constexpr int kChunks = 15;
-  std::vector<std::uint8_t> chunk(128 * 1024);
+  std::vector<std::uint8_t> chunk(std::size_t{128} * 1024);
   for (int i = 0; i < kChunks; ++i) {
     std::iota(chunk.begin(), chunk.end(), static_cast<std::uint8_t>(i));
     sender.link().publish("y.chunk", chunk);
@@ -188,7 +216,7 @@ TEST(NatsLinkTest, AServerThatHangsIsLeft) {
 
 /// Publishes more than sockets hold.
 void flood(NatsLink& link) {
-  const std::vector<std::uint8_t> chunk(128 * 1024);
+  const std::vector<std::uint8_t> chunk(std::size_t{128} * 1024);
   const std::uint64_t lost = link.state().lost;
   while (link.state().lost == lost) link.publish("y.flood", chunk);
 }
@@ -246,30 +274,28 @@ TEST(NatsLinkTest, AServerMayComeLater) {
 TEST(NatsLinkTest, MessagesOverALimitAreCountedAndDropped) {
   const NatsServer server;
   Peer sender({server.address()}, {});
-  NatsSettings settings{.servers = {server.address()}, .name = "small"};
+  NatsSettings settings = settings_of({server.address()});
   settings.max_message_bytes = 1000;
   settings.max_waiting = 10;
-  NatsLink reader(settings, {"y.>"}, nullptr);
+  Peer reader(settings, {"y.>"});
   sender.until_connected();
-  sender.until([&](const NatsLink::State&) { return reader.state().is_connected; });
-  reader.publish(reader.inbox(), {});  // when it is back, the server knows what the reader subscribes to
-  sender.until([&](const NatsLink::State&) { return reader.state().received == 1; });
-  EXPECT_THAT(reader.received(), SizeIs(1));
+  reader.until_connected();
+  reader.link().publish(reader.link().inbox(), {});  // when it is back, the server knows what the reader subscribes to
+  reader.until([](const NatsLink::State& state) { return state.received == 1; });
+  EXPECT_THAT(reader.link().received(), SizeIs(1));
   constexpr int kMany = 30;
   const auto publish_many = [&](std::size_t size) {
-    const NatsLink::State before = reader.state();
+    const NatsLink::State before = reader.link().state();
     for (int i = 0; i < kMany; ++i) sender.link().publish("y.many", std::vector<std::uint8_t>(size));
-    sender.until([&](const NatsLink::State&) {
-      const NatsLink::State now = reader.state();
-      return now.received + now.lost == before.received + before.lost + kMany;
-    });
+    reader.until(
+        [&](const NatsLink::State& now) { return now.received + now.lost == before.received + before.lost + kMany; });
   };
   publish_many(settings.max_message_bytes + 1);
-  EXPECT_EQ(reader.state().lost, 30U);
-  EXPECT_THAT(reader.received(), IsEmpty());
+  EXPECT_EQ(reader.link().state().lost, 30U);
+  EXPECT_THAT(reader.link().received(), IsEmpty());
   publish_many(settings.max_message_bytes);
-  EXPECT_EQ(reader.state().lost, 50U);
-  EXPECT_THAT(reader.received(), SizeIs(10));
+  EXPECT_EQ(reader.link().state().lost, 50U);
+  EXPECT_THAT(reader.link().received(), SizeIs(10));
 
   const std::uint64_t lost = sender.link().state().lost;
   sender.link().publish("y.long", std::vector<std::uint8_t>(256 * 1024 + 1));
@@ -301,23 +327,23 @@ class Credentials {
 TEST(NatsLinkTest, AWrongPasswordIsATrouble) {
   const NatsServer server(kOneUser);
   const Credentials wrong("wall:sword"), right("wall:swordfish");
-  Peer refused(NatsSettings{.servers = {server.address()}, .name = "wrong", .credentials = wrong.file()}, {});
+  Peer refused(settings_of({server.address()}, wrong.file()), {});
   EXPECT_THAT(refused.until_trouble().trouble, HasSubstr("does not accept this user: check the file of credentials"));
-  Peer accepted(NatsSettings{.servers = {server.address()}, .name = "right", .credentials = right.file()}, {"y.tick"});
+  Peer accepted(settings_of({server.address()}, right.file()), {"y.tick"});
   connect(accepted, accepted, "y.tick");
 
   std::filesystem::permissions(right.file(), std::filesystem::perms::others_read, std::filesystem::perm_options::add);
-  Peer exposed(NatsSettings{.servers = {server.address()}, .name = "right", .credentials = right.file()}, {});
+  Peer exposed(settings_of({server.address()}, right.file()), {});
   EXPECT_THAT(exposed.until_trouble().trouble, HasSubstr("chmod 640"));
   const Credentials neither("something");
-  Peer unclear(NatsSettings{.servers = {server.address()}, .name = "right", .credentials = neither.file()}, {});
+  Peer unclear(settings_of({server.address()}, neither.file()), {});
   EXPECT_THAT(unclear.until_trouble().trouble, HasSubstr("neither user:password nor the seed of an nkey"));
 }
 
 TEST(NatsLinkTest, WhatIsNotPermittedIsATrouble) {
   const NatsServer server(kOneUser);
   const Credentials credentials("wall:swordfish");
-  const NatsSettings settings{.servers = {server.address()}, .name = "wall", .credentials = credentials.file()};
+  const NatsSettings settings = settings_of({server.address()}, credentials.file());
   Peer subscribes(settings, {"y.secret", "y.tick"});
   EXPECT_THAT(subscribes.until_trouble().trouble,
               testing::AllOf(HasSubstr("does not permit"), HasSubstr("y.secret"), HasSubstr("change the permissions")));
@@ -333,7 +359,7 @@ TEST(NatsLinkTest, AnNkeyIsAccepted) {
   const NatsServer server(
       "authorization { users: [ { nkey: UDXU4RCSJNZOIQHZNWXHXORDPRTGNJAHAHFRGZNEEJCPQTT2M7NLCNF4 } ] }\n");
   const Credentials credentials("SUACSSL3UAHUDXKFSNVUZRF5UHPMWZ6BFDTJ7M6USDXIEDNPPQYYYCU3VY");
-  Peer peer(NatsSettings{.servers = {server.address()}, .name = "nkey", .credentials = credentials.file()}, {"y.tick"});
+  Peer peer(settings_of({server.address()}, credentials.file()), {"y.tick"});
   connect(peer, peer, "y.tick");
   Peer refused({server.address()}, {});
   EXPECT_THAT(refused.until_trouble().trouble, HasSubstr("does not accept this user"));
@@ -363,11 +389,11 @@ TEST(NatsLinkTest, TlsIsVerified) {
   // By nats:// there is TLS if the server requires it.
   for (const std::string& address :
        {server.address("tls", "localhost"), server.address("tls"), server.address(), plain.address()}) {
-    Peer peer(NatsSettings{.servers = {address}, .name = "t", .authorities = own.authorities()}, {"y.tick"});
+    Peer peer(settings_of({address}, "", own.authorities()), {"y.tick"});
     connect(peer, peer, "y.tick");
   }
   const auto trouble = [](const std::string& address, const std::filesystem::path& authorities) {
-    Peer peer(NatsSettings{.servers = {address}, .name = "t", .authorities = authorities}, {});
+    Peer peer(settings_of({address}, "", authorities), {});
     return peer.until_trouble().trouble;
   };
   EXPECT_THAT(trouble(server.address("tls", "localhost"), foreign.authorities()), HasSubstr("check the authorities"));
@@ -382,7 +408,7 @@ TEST(NatsLinkTest, ATlsServerThatHangsIsLeftEvenIfNothingMoreCanBeSentToIt) {
   const Tls tls("DNS:localhost,IP:127.0.0.1");
   const NatsServer first(tls.lines()), second(tls.lines());
   const std::vector<std::string> servers = {first.address("tls", "localhost"), second.address("tls", "localhost")};
-  Peer peer(NatsSettings{.servers = servers, .name = "t", .authorities = tls.authorities()}, {"y.tick"});
+  Peer peer(settings_of(servers, "", tls.authorities()), {"y.tick"});
   connect(peer, peer, "y.tick");
   first.hold();
   flood(peer.link());
@@ -406,6 +432,7 @@ TEST(NatsLinkTest, AHandshakeThatHangsIsLeftBehind) {
   connect(peer, peer, "y.tick");
   EXPECT_EQ(peer.link().state().server, server.address());
   hanging.join();
+  client.reset();  // which ends the thread that was left behind
 }
 
 }  // namespace
