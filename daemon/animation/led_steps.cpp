@@ -7,7 +7,7 @@
 namespace yuragi::daemon::animation {
 namespace {
 
-/// Ticks that may wait: those of some seconds, after a state that is as old.
+/// Ticks that may wait besides those of the delay: of some seconds, after a state that is as old.
 constexpr std::size_t kWaiting = 512;
 /// The most that are made at a time: so what is late is caught up with, and no step takes much longer.
 constexpr int kMostAtOnce = 2;
@@ -21,7 +21,10 @@ constexpr double kMaxStep_s = 0.1;
 }  // namespace
 
 LedSteps::LedSteps(std::uint64_t number, double rate_hz, Nanoseconds delay)
-    : rate_hz_(rate_hz), period_(from_seconds(1.0 / rate_hz)), delay_(delay), queue_(kWaiting) {
+    : rate_hz_(rate_hz),
+      period_(from_seconds(1.0 / rate_hz)),
+      delay_(delay),
+      queue_(kWaiting + static_cast<std::size_t>(seconds(delay) * rate_hz)) {
   at_.number = number;
   publish();
 }

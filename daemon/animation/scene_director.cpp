@@ -34,6 +34,18 @@ void SceneDirector::resume(const SceneRoster& roster) {
   for (std::size_t i = 0; i < scenes_.size(); ++i) scenes_[i].shown = roster.scenes.at(i)->fade.is_shown();
 }
 
+void SceneDirector::note_shown(std::span<const std::uint8_t> shown) {
+  for (std::size_t i = 0; i < std::min(scenes_.size(), shown.size()); ++i) scenes_[i].shown = shown[i] != 0;
+}
+
+void SceneDirector::note(const SceneCue& cue) {
+  if (cue.scene >= scenes_.size()) return;
+  if (cue.hide_others) {
+    for (wire::SceneState& scene : scenes_) scene.shown = false;
+  }
+  scenes_[cue.scene].shown = cue.shown;
+}
+
 wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_local) {
   return carry_out(control, settings::control_refusal(allowed_, is_local, "scenes cannot be switched"));
 }

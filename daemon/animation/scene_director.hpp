@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ class SceneDirector {
 
   /// What the animation shows and hides is what was shown and hidden here, after its state was loaded.
   void resume(const SceneRoster& roster);
+
+  /// The same, for each scene in its order.
+  void note_shown(std::span<const std::uint8_t> shown);
+  /// Another daemon, which this one follows, has sent this cue to the animation.
+  void note(const SceneCue& cue);
 
   /// Changes who may switch scenes.
   void allow(settings::ControlPermission allowed) { allowed_ = allowed; }

@@ -19,10 +19,12 @@
 #include "daemon/alerts/alerts.hpp"
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/animation_loop.hpp"
+#include "daemon/animation/led_steps.hpp"
 #include "daemon/animation/recent_lateness.hpp"
 #include "daemon/animation/scene_director.hpp"
 #include "daemon/animation/scene_exchange.hpp"
 #include "daemon/feeds/feeds.hpp"
+#include "daemon/follow/company.hpp"
 #include "daemon/history/history_json.hpp"
 #include "daemon/history/history_reader.hpp"
 #include "daemon/history/wind_history.hpp"
@@ -58,6 +60,7 @@
 #include "engine/output/output.hpp"
 #include "engine/platform/clock_watch.hpp"
 #include "engine/platform/secret_file.hpp"
+#include "engine/wire/lead/wind_tick.hpp"
 
 namespace yuragi::daemon::service {
 namespace {
@@ -70,6 +73,10 @@ constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 constexpr auto kMeansInterval = std::chrono::hours(1);
 /// Until the answer to the request for a restart has been sent.
 constexpr auto kRestartAfter = std::chrono::milliseconds(500);
+/// What is shown has settled after a leader's state was loaded (animation::SettlingPoses).
+constexpr auto kSettled = std::chrono::seconds(2);
+constexpr std::string_view kLedRefusal =
+    "this daemon shows what its leader shows ([wind] follow): show and hide scenes there";
 
 static_assert(settings::kMaxSensors + 1 <= wire::kMaxSensors && settings::kMaxScenes <= wire::kMaxScenes);
 
@@ -102,6 +109,19 @@ wire::FeedStatus to_wire(const feeds::Status& feed, MonoTime now) {
                           .last_sent_age_s = {},
                           .trouble = feed.trouble};
   if (feed.last_sent) status.last_sent_age_s = std::max(0.0, seconds(now - *feed.last_sent));
+  return status;
+}
+
+wire::FeedStatus to_wire(const follow::Company::Status& company, MonoTime now) {
+  wire::FeedStatus status{.kind = "nats",
+                          .name = company.channel,
+                          .target = company.server,
+                          .sends = company.part,
+                          .messages = company.messages,
+                          .bytes = company.bytes,
+                          .last_sent_age_s = {},
+                          .trouble = company.trouble};
+  if (company.last) status.last_sent_age_s = std::max(0.0, seconds(now - *company.last));
   return status;
 }
 
@@ -144,7 +164,7 @@ class Service::Io {
         page_file_trouble_(config.page_trouble),
         gusts_(sensing::make_gust_noise(config)),
         animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
-        director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
+        director_(config, [this](const animation::SceneCue& cue) { return send(cue); }),
         stream_(io_, config.stream.listen, stream_settings(config)),
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0,
              options.lead_s > 0.0 ? sensing::SensorThread::kOfCaller : sensing::SensorThread::kOwn),
@@ -168,7 +188,8 @@ class Service::Io {
                      .restore = [this](const auto& learnt) { return hub_.restore_relative_gains(learnt); }},
            .reach = {.learnt = [this] { return hub_.gust_reach(); },
                      .restore = [this](const auto& learnt) { return hub_.restore_gust_reach(learnt); }}});
-      loop_ = std::make_unique<animation::Loop>(*animation_, wind_, clock_, rate_hz_);
+      if (config.wind.lead.is_in_company() && !options.recorded_from) join_company(config);
+      loop_ = std::make_unique<animation::Loop>(*animation_, wind_, clock_, rate_hz_, led_ ? &*led_ : nullptr);
       recent_tick_lateness_.emplace(loop_->counters().lateness);
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
@@ -336,6 +357,54 @@ class Service::Io {
     director_.resume(*animation_->roster());
   }
 
+  // ---- one wind for several daemons ----
+
+  void join_company(const settings::Config& config) {
+    const Nanoseconds delay = from_seconds(config.wind.lead.delay_s);
+    const double begun_s = std::max(0.0, seconds(started_.utc.time_since_epoch() - delay));
+    led_.emplace(static_cast<std::uint64_t>(begun_s * rate_hz_), rate_hz_, delay);
+    std::vector<std::uint8_t> state;
+    animation_->save_state(state, started_.mono);
+    company_.emplace(
+        config, state.size(), *led_, started_, [this] { asio::post(io_, [this] { take_from_company(); }); },
+        follow::Follower::Listener{
+            .loaded =
+                [this](const std::vector<std::uint8_t>& shown) {
+                  loaded_at_ = clock_.now().mono;
+                  director_.note_shown(shown);
+                  parameters_.note_change();
+                },
+            .cued =
+                [this](const wire::lead::TickCue& cue) {
+                  director_.note(
+                      {.scene = cue.scene, .shown = cue.shown, .hide_others = cue.hide_others, .over_s = cue.over_s});
+                  parameters_.note_change();
+                }});
+  }
+
+  void take_from_company() {
+    contain("what came from other daemons", [this] {
+      if (company_) company_->take(clock_.now().mono);
+    });
+  }
+
+  /// A leader's cues come with its ticks.
+  bool send(const animation::SceneCue& cue) {
+    if (company_ && company_->leads()) return company_->cue(cue);
+    return loop_ && loop_->cue(cue);
+  }
+
+  /// The poses of all that are in its company are made from this. Then the leader's wind is the one that is shown here.
+  void advance_company(wind::ground::DrivingWind& real, wind::ground::DrivingWind& driving) {
+    if (!company_) return;
+    const Nanoseconds late = std::chrono::steady_clock::now() - wind_due_;
+    Instant now = clock_.now();
+    now.mono -= late;
+    now.utc -= late;
+    company_->advance(driving, now, wind_periods_);
+    if (const wind::ground::DrivingWind* const led = company_->wind()) real = driving = *led;
+  }
+
   /// Reads what the daemon records itself; it owns all that it uses.
   static std::unique_ptr<history::Reader> make_history(const std::filesystem::path& file) {
     return std::make_unique<history::Reader>(
@@ -484,7 +553,8 @@ class Service::Io {
   /// Passes waiting scenes to the animation, unless too many cues wait; then with the next frame. The replaced scenes
   /// are freed once they have faded out.
   void exchange_scenes() {
-    if (next_scenes_ && scenes_->begin(next_scenes_)) parameters_.note_change();
+    const bool is_settling = loaded_at_ && clock_.now().mono - *loaded_at_ < kSettled;
+    if (next_scenes_ && !is_settling && scenes_->begin(next_scenes_)) parameters_.note_change();
     if (scenes_->take_finished()) reload_.go_on();
   }
 
@@ -493,6 +563,7 @@ class Service::Io {
     const settings::Config& next = plan.next;
     page_file_trouble_ = next.page_trouble;
     hub_.change(next);
+    if (company_) company_->change(next, clock_.now());
     if (plan.changes_shaping) shaper_.change(next.shaping);
     cameras_ = cameras_of(next);
     clock_of_cameras_ = next.clock;
@@ -531,11 +602,14 @@ class Service::Io {
     if (control.player) return players_.handle(*control.player, is_local);
     if (animation_ && control.hand) return set_by_hand(*control.hand, is_local);
     if (animation_) {
+      if (!control.scene.empty() && is_led()) return {.done = false, .message = std::string(kLedRefusal), .scenes = {}};
       if (!control.scene.empty()) parameters_.note_change();
       return director_.handle(control, is_local);
     }
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
+
+  bool is_led() const { return company_ && company_->is_led(clock_.now().mono); }
 
   /// Viewers need not wait for the next status. Who it was is logged by the stream or by web.
   wire::ControlReply set_by_hand(const wire::HandCommand& command, bool is_local) {
@@ -557,6 +631,7 @@ class Service::Io {
 
   void show_scene(const wire::Control& control) {
     if (!animation_) return;
+    if (is_led()) return spdlog::warn("a feed's command: {}", kLedRefusal);
     parameters_.note_change();
     const wire::ControlReply reply = director_.handle_permitted(control);
     if (!reply.done) spdlog::warn("a feed's command: {}", reply.message);
@@ -581,9 +656,10 @@ class Service::Io {
 
   /// Gives the animation the next wind, and other programs what they get of it.
   void advance_wind() {
-    const wind::ground::DrivingWind real = next_real_wind();
-    const wind::ground::DrivingWind driving = shaped(real);
+    wind::ground::DrivingWind real = next_real_wind();
+    wind::ground::DrivingWind driving = shaped(real);
     wind_.publish(driving);
+    contain("the wind for other daemons", [&] { advance_company(real, driving); });
     contain("what other programs get of the wind", [&] {
       const auto moment = moments_.make(real, driving, shaper_.report(), clock_.now(), hub_.values());
       feeds_->publish(moment);
@@ -597,11 +673,14 @@ class Service::Io {
 
   /// Advances the wind at the rate of the animation.
   void step_wind() {
+    wind_due_ = next_wind_;
     contain("a step of the wind", [this] { advance_wind(); });
 
     // Steps are at fixed times; those missed while the machine was halted are skipped.
     const auto period = from_seconds(1.0 / rate_hz_);
     next_wind_ = std::max(next_wind_ + period, asio::steady_timer::clock_type::now() - period);
+    wind_periods_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+        std::llround(seconds(next_wind_ - wind_due_) * rate_hz_), 1, wire::lead::kMaxTickPeriods));
     wind_timer_.expires_at(next_wind_);
     wind_timer_.async_wait([this](const boost::system::error_code& error) {
       if (error) return;
@@ -675,6 +754,7 @@ class Service::Io {
     wire::Sensors status;
     status.sensors = hub_.status();
     status.wind = hub_.wind();
+    if (const wind::ground::DrivingWind* const led = company_ ? company_->wind() : nullptr) status.wind = led->state;
     status.gust_reach_across = hub_.gust_reach().across();
     status.gust_reach_along = hub_.gust_reach().along();
     status.shaping = shaper_.status();
@@ -719,6 +799,7 @@ class Service::Io {
         status.troubles.push_back(std::move(trouble));
     }
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
+    if (company_) status.feeds.push_back(to_wire(company_->status(now), now));
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
     if (stream_.has_untrusted_clients() || (web_ && web_->has_untrusted_clients())) {
@@ -773,6 +854,7 @@ class Service::Io {
     stream_.close();
     if (web_) web_->close();
     feeds_.reset();
+    company_.reset();
     signals_.cancel();
     hangups_.signals.cancel();
     end_timer_.cancel();
@@ -797,7 +879,9 @@ class Service::Io {
   asio::steady_timer end_timer_{io_}, restart_timer_{io_}, wind_timer_{io_}, status_timer_{io_}, again_timer_{io_},
       means_timer_{io_};
   asio::steady_timer::time_point next_wind_;
-  animation::DurationHistogram io_lateness_;  ///< of each step of the wind
+  std::chrono::steady_clock::time_point wind_due_ = std::chrono::steady_clock::now();  ///< of the present step
+  std::uint32_t wind_periods_ = 1;                                                     ///< that the next step takes
+  animation::DurationHistogram io_lateness_;                                           ///< of each step of the wind
   animation::RecentLateness recent_io_lateness_{io_lateness_};
   std::optional<animation::RecentLateness> recent_tick_lateness_;  ///< nullopt: no scenes
   animation::RecentWindow<std::uint64_t> skipped_before_;
@@ -830,6 +914,7 @@ class Service::Io {
   sensing::RecordingFolders folders_;
   HandDirector hand_;
   Latest<wind::ground::DrivingWind> wind_;
+  std::optional<animation::LedSteps> led_;  ///< nullopt: its ticks are its own
   std::unique_ptr<animation::Loop> loop_;
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
@@ -840,7 +925,9 @@ class Service::Io {
   std::optional<platform::ClockWatch> clock_watch_;  ///< if screens are in step by this machine's clock
   std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
   Manager manager_{options_.with_scenes};
-  bool is_up_ = false;  ///< it has begun, with its first frame if it has scenes
+  std::optional<MonoTime> loaded_at_;       ///< a leader's state
+  std::optional<follow::Company> company_;  ///< nullopt: it neither leads nor follows
+  bool is_up_ = false;                      ///< it has begun, with its first frame if it has scenes
 
   settings::ControlPermission control_;
   Reload reload_;  ///< it uses all of the above

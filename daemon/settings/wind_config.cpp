@@ -203,6 +203,9 @@ std::vector<ParameterError> fill_wind(WindConfig& wind, const ParameterValues& v
   WindTable table;
   std::vector<ParameterError> errors = wind_fields().fill(table, values.all());
   wind = std::move(table.wind);
+  const LeadConfig& lead = wind.lead;
+  if (!lead.lead.empty() && !lead.follow.empty() && lead.lead != lead.follow)
+    errors.push_back({"lead", "a stand-by leads by way of the same servers as it follows"});
   if (!table.fallback_recording.empty())
     wind.fallback = {.recording = table.fallback_recording, .after_s = table.fallback_after_s};
   return errors;

@@ -1,0 +1,190 @@
+#include "daemon/follow/company.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/settings/config_error.hpp"
+#include "engine/wire/lead/wind_tick.hpp"
+
+namespace yuragi::daemon::follow {
+namespace {
+
+/// A server without a tick for this long hangs: the stream itself is the sign of life. Longer each time in vain.
+constexpr Nanoseconds kHangsAfter = std::chrono::milliseconds(500), kHangsLongest = std::chrono::seconds(8);
+/// A stand-by leads when no leader is heard for this long.
+constexpr auto kStandsInAfter = std::chrono::seconds(3);
+/// Two leaders on one channel take over from each other at most this often.
+constexpr auto kTakesOverEvery = std::chrono::seconds(10);
+/// Its own animation had to do without a tick: the others have another picture.
+constexpr auto kNewEpochEvery = std::chrono::seconds(5);
+
+std::string list_of(const std::vector<std::string>& texts) {
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+NatsSettings link_settings(const settings::LeadConfig& config, const std::string& software) {
+  return {.servers = config.follow.empty() ? config.lead : config.follow,
+          .name = software,
+          .credentials = config.credentials,
+          .authorities = config.authorities};
+}
+
+}  // namespace
+
+Company::Company(const settings::Config& config, std::size_t state_bytes, animation::LedSteps& steps, Instant now,
+                 std::function<void()> on_arrival, Follower::Listener listener)
+    : config_(config.wind.lead),
+      ticks_subject_(config_.channel + ".tick"),
+      questions_subject_(config_.channel + ".ask"),
+      steps_(steps),
+      makeup_(makeup_of(config)),
+      leader_(makeup_, config.animation.rate_hz, from_seconds(config_.delay_s), state_bytes, ticks_subject_, steps,
+              [this](const std::string& subject, const Bytes& bytes) { link_.publish(subject, bytes); }),
+      follower_(
+          makeup_, from_seconds(config_.delay_s), steps,
+          [this](const Bytes& question) { link_.publish(questions_subject_, question, link_.inbox()); },
+          std::move(listener)),
+      leads_(!config_.lead.empty() && config_.follow.empty()),
+      began_(now.mono),
+      left_server_(now.mono),
+      new_epoch_(now.mono),
+      leave_after_(kHangsAfter),
+      link_(link_settings(config_, makeup_.software),
+            config_.lead.empty() ? std::vector{ticks_subject_} : std::vector{ticks_subject_, questions_subject_},
+            std::move(on_arrival)) {
+  if (const auto refusal = NatsLink::refusal()) throw settings::ConfigError("[wind] lead, follow: " + *refusal);
+  if (leads_) lead(now);
+}
+
+void Company::lead(const Instant& now) {
+  leads_ = true;
+  new_epoch_ = now.mono;
+  const std::uint64_t latest = std::max({others_epoch_, follower_.latest_epoch(), leader_.epoch()});
+  leader_.begin_epoch(now.utc, latest, std::max(follower_.newest_number(), steps_.position().number));
+  follower_.leave();
+}
+
+void Company::take(MonoTime now) {
+  for (const NatsMessage& message : link_.received()) {
+    if (message.subject == ticks_subject_) {
+      heard_ = now;
+      leave_after_ = kHangsAfter;
+      if (!leads_) {
+        follower_.take_tick(message.bytes, now);
+      } else if (const auto tick = wire::lead::decode_wind_tick(message.bytes, now);
+                 tick && tick->epoch > leader_.epoch()) {
+        others_epoch_ = std::max(others_epoch_, tick->epoch);
+        two_leaders_ = now;
+      }
+    } else if (message.subject == questions_subject_) {
+      if (leads_) leader_.answer(message.bytes, message.reply_to, now);
+    } else if (!leads_) {
+      follower_.take_reply(message.bytes, now);
+    }
+  }
+}
+
+void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now, std::uint32_t periods) {
+  const bool stands_by = !config_.lead.empty() && !config_.follow.empty();
+  if (leads_ && others_epoch_ > leader_.epoch()) {
+    if (stands_by) {
+      spdlog::info("company: another daemon leads again");
+      leads_ = false;
+      began_ = now.mono;
+    } else if (now.mono - new_epoch_ > kTakesOverEvery) {
+      lead(now);
+    }
+  } else if (leads_ && !steps_.position().is_exact && steps_.position().epoch == leader_.epoch() &&
+             now.mono - new_epoch_ > kNewEpochEvery) {
+    lead(now);
+  } else if (!leads_ && stands_by && now.mono - std::max(began_, follower_.heard().value_or(began_)) > kStandsInAfter) {
+    spdlog::info("company: no leader is heard: this daemon leads");
+    lead(now);
+  }
+  if (leads_) {
+    leader_.make_tick(wind, now, periods);
+    leader_.advance(now.mono);
+  } else {
+    follower_.advance(now.mono);
+  }
+  leave_hanging_server(now.mono);
+}
+
+void Company::leave_hanging_server(MonoTime now) {
+  if (now - std::max(left_server_, heard_.value_or(began_)) < leave_after_) return;
+  left_server_ = now;
+  leave_after_ = std::min(2 * leave_after_, kHangsLongest);
+  link_.leave_server();
+}
+
+bool Company::is_led(MonoTime now) const {
+  return !leads_ && follower_.phase(now) == Follower::Phase::kSamePicture;
+}
+
+void Company::change(const settings::Config& config, const Instant& now) {
+  PictureMakeup makeup = makeup_of(config);
+  if (makeup.hash() == makeup_.hash()) return;
+  makeup_ = std::move(makeup);
+  leader_.set_makeup(makeup_);
+  follower_.set_makeup(makeup_);
+  if (leads_) lead(now);
+}
+
+std::string Company::trouble(MonoTime now) const {
+  const NatsLink::State link = link_.state();
+  if (!link.trouble.empty()) return link.trouble;
+  if (leads_ && two_leaders_ && now - *two_leaders_ < kTakesOverEvery)
+    return "another daemon leads on the channel " + config_.channel + ": give each leader a channel of its own";
+  if (leads_) return {};
+  switch (follower_.phase(now)) {
+    case Follower::Phase::kNoLeader:
+      return "no leader is heard on the channel " + config_.channel + ": its own sensors are used";
+    case Follower::Phase::kSilent:
+      return "the leader is silent: the own sensors are used until it is heard again";
+    case Follower::Phase::kDiffers:
+      return "cannot follow the leader: " + list_of(follower_.differences()) + "; its own sensors are used";
+    default:
+      return {};
+  }
+}
+
+Company::Status Company::status(MonoTime now) const {
+  const NatsLink::State link = link_.state();
+  Status status{.server = link.server,
+                .channel = config_.channel,
+                .part = {},
+                .trouble = trouble(now),
+                .messages = link.sent + link.received,
+                .bytes = link.sent_bytes + link.received_bytes,
+                .last = heard_};
+  const Follower::Counts& counts = follower_.counts();
+  if (leads_) {
+    status.part = fmt::format("leads; {} questions answered, {} ticks sent again, {} states",
+                              leader_.counts().questions, leader_.counts().repaired_ticks, leader_.counts().states);
+    return status;
+  }
+  const char* part = "waits for a leader";
+  switch (follower_.phase(now)) {
+    case Follower::Phase::kSamePicture:
+      part = "the same picture as its leader";
+      break;
+    case Follower::Phase::kSameWind:
+      part = "the leader's wind, another picture";
+      break;
+    case Follower::Phase::kJoining:
+      part = "the leader's wind; its picture comes";
+      break;
+    default:
+      break;
+  }
+  status.part = fmt::format("{}; {} ticks, {} lost and had again, {} without a tick, {} states", part, counts.ticks,
+                            counts.repaired, steps_.position().without_tick, counts.states);
+  if (!follower_.differences().empty() && status.trouble.empty())
+    status.part += ": " + list_of(follower_.differences());
+  return status;
+}
+
+}  // namespace yuragi::daemon::follow

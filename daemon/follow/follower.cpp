@@ -1,0 +1,231 @@
+#include "daemon/follow/follower.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace yuragi::daemon::follow {
+namespace {
+
+/// How long before its time a tick is handed to the animation: between two steps of this thread.
+constexpr int kHandedEarly = 2;
+constexpr Nanoseconds kAskLeaderFirst = std::chrono::milliseconds(250), kAskLeaderLongest = std::chrono::seconds(2);
+/// Some replies' times, so that none is asked for twice in vain.
+constexpr Nanoseconds kAskTicks = std::chrono::milliseconds(60);
+constexpr Nanoseconds kAskStateFirst = std::chrono::milliseconds(1500), kAskStateLongest = std::chrono::seconds(10);
+
+}  // namespace
+
+void Follower::Asking::ask(MonoTime now, Nanoseconds first, Nanoseconds longest) {
+  wait = asked ? std::min(2 * wait, longest) : first;
+  asked = now;
+}
+
+Follower::Follower(PictureMakeup makeup, Nanoseconds delay, animation::LedSteps& steps, Ask ask, Listener listener)
+    : makeup_(std::move(makeup)),
+      play_out_(makeup_.rate_hz, delay),
+      steps_(steps),
+      ask_(std::move(ask)),
+      listener_(std::move(listener)),
+      period_(from_seconds(1.0 / makeup_.rate_hz)) {}
+
+void Follower::refuse(const std::string& why) {
+  ++counts_.refused;
+  counts_.last_refusal = why;
+}
+
+void Follower::take_tick(std::span<const std::uint8_t> bytes, MonoTime now) {
+  const auto tick = wire::lead::decode_wind_tick(bytes, now);
+  if (!tick) {
+    heard_unknown_ = now;
+    return refuse("a tick " + tick.error().message);
+  }
+  if (tick->epoch < play_out_.epoch()) return refuse("a tick is of an epoch that is over");
+  heard_ = now;
+  if (!is_of_the_present(*tick, now)) return;
+  switch (play_out_.take(*tick, now)) {
+    case PlayOut::Taken::kNew:
+      ++counts_.ticks;
+      break;
+    case PlayOut::Taken::kKnown:
+      ++counts_.known;
+      break;
+    case PlayOut::Taken::kNotOfIt:
+      // After a long silence the numbers have gone on.
+      play_out_.begin(tick->epoch);
+      play_out_.take(*tick, now);
+      break;
+  }
+}
+
+/// Of a leader that has introduced itself. Another one is asked for that, and forgotten if it does not.
+bool Follower::is_of_the_present(const wire::lead::WindTick& tick, MonoTime now) {
+  if (tick.epoch == play_out_.epoch()) {
+    if (other_ && now - other_->since > kSilentAfter) other_.reset();
+    return is_in_wind_;
+  }
+  if (!other_ || tick.epoch > other_->epoch) other_ = {.epoch = tick.epoch, .since = now};
+  return false;
+}
+
+void Follower::take_reply(std::span<const std::uint8_t> bytes, MonoTime now) {
+  const auto reply = decode_reply(bytes);
+  if (!reply) return refuse("a reply " + reply.error().message);
+  std::visit([this, now](const auto& held) { take(held, now); }, *reply);
+}
+
+void Follower::take(const Introduction& introduction, MonoTime /*now*/) {
+  if (introduction.epoch < latest_epoch()) return refuse("a leader is of an epoch that is over");
+  other_.reset();
+  leader_ = {};
+  leaders_ = introduction.makeup;
+  differences_ = wind_differences(*leaders_, makeup_);
+  is_in_wind_ = differences_.empty();
+  if (is_in_wind_) differences_ = scene_differences(*leaders_, makeup_);
+  if (introduction.epoch == play_out_.epoch()) return;
+  play_out_.begin(introduction.epoch);
+  ticks_ = state_ = {};
+  arriving_.reset();
+  to_load_.reset();
+}
+
+void Follower::take(const Ticks& ticks, MonoTime now) {
+  for (const Bytes& bytes : ticks.ticks) {
+    const auto tick = wire::lead::decode_wind_tick(bytes, now);
+    if (!tick) return refuse("a tick that was asked for " + tick.error().message);
+    if (is_in_wind_ && play_out_.take(*tick, now) == PlayOut::Taken::kNew) ++counts_.repaired;
+  }
+}
+
+void Follower::take(const StatePart& part, MonoTime now) {
+  if (!has_same_scenes() || part.epoch != play_out_.epoch() || part.made_of != makeup_.hash() || to_load_ ||
+      is_loading_)
+    return;
+  if (part.first_byte == 0) {
+    arriving_ = part;
+  } else if (arriving_ && arriving_->number == part.number && arriving_->total_bytes == part.total_bytes &&
+             arriving_->bytes.size() == part.first_byte) {
+    arriving_->bytes.insert(arriving_->bytes.end(), part.bytes.begin(), part.bytes.end());
+  } else {
+    arriving_.reset();  // a part is lost: it asks again
+    return;
+  }
+  if (arriving_->bytes.size() < arriving_->total_bytes) return;
+  to_load_ = std::make_unique<animation::StateOrder>();
+  to_load_->kind = animation::StateOrder::Kind::kLoad;
+  to_load_->number = arriving_->number;
+  to_load_->state = std::move(arriving_->bytes);
+  to_load_->shown.resize(makeup_.scenes.size());
+  arriving_.reset();
+  load(now);
+}
+
+/// Between the ticks that were handed over already and those that follow the state.
+void Follower::load(MonoTime now) {
+  if (!to_load_) return;
+  // It is of a tick that is not played yet: it waits for that.
+  if (to_load_->number > play_out_.newest()) return;
+  play(now);
+  if (!play_out_.go_back_to(to_load_->number)) {
+    // It waits until that tick is played; one that is too old, or before a gap, is asked for again.
+    if (to_load_->number < play_out_.played()) to_load_.reset();
+    return;
+  }
+  if (steps_.order(to_load_)) is_loading_ = true;
+}
+
+void Follower::play(MonoTime now) {
+  while (const wire::lead::WindTick* tick = play_out_.next(now + kHandedEarly * period_)) {
+    uses_own_wind_ = false;
+    for (std::size_t i = 0; i < tick->cue_count; ++i) listener_.cued(tick->cues[i]);
+    if (!steps_.push(play_out_.due(tick->number), *tick, false)) return;
+  }
+}
+
+const wind::ground::DrivingWind* Follower::wind() const noexcept {
+  const wire::lead::WindTick* const last = uses_own_wind_ ? nullptr : play_out_.last();
+  return last == nullptr ? nullptr : &last->wind;
+}
+
+void Follower::ask_for_ticks(MonoTime now) {
+  const auto gap = play_out_.first_gap();
+  if (!gap) {
+    ticks_ = {};
+    return;
+  }
+  if (!ticks_.is_due(now)) return;
+  if (!ticks_.asked) ++counts_.gaps;
+  ticks_.ask(now, kAskTicks, kAskTicks);
+  ask_(
+      encode(Question{.about = Question::About::kTicks, .epoch = play_out_.epoch(), .from = gap->from, .to = gap->to}));
+}
+
+void Follower::ask_for_state(MonoTime now) {
+  const animation::LedSteps::Position at = steps_.position();
+  const bool is_needed = has_same_scenes() && at.is_led && !(at.is_exact && at.epoch == play_out_.epoch());
+  if (!is_needed || to_load_ || is_loading_) {
+    if (!is_needed) state_ = {};
+    return;
+  }
+  if (at.epoch != play_out_.epoch() || !state_.is_due(now)) return;
+  state_.ask(now, kAskStateFirst, kAskStateLongest);
+  ask_(encode(Question{.about = Question::About::kState, .epoch = play_out_.epoch()}));
+}
+
+void Follower::ask_who_leads(MonoTime now) {
+  const bool is_unknown = heard_unknown_ && now - *heard_unknown_ < kSilentAfter && !is_in_wind_;
+  if (!other_ && leaders_ && !is_unknown) return;
+  if (!leader_.is_due(now)) return;
+  leader_.ask(now, kAskLeaderFirst, kAskLeaderLongest);
+  ask_(encode(Question{}));
+}
+
+void Follower::advance(MonoTime now) {
+  if (const auto finished = is_loading_ ? steps_.take_finished() : nullptr) {
+    is_loading_ = false;
+    if (finished->is_done) {
+      ++counts_.states;
+      listener_.loaded(finished->shown);
+    }
+  }
+  const bool is_silent = !heard_ || now - *heard_ > kSilentAfter;
+  if (heard_ || heard_unknown_) ask_who_leads(now);
+  if (is_silent || !is_in_wind_) {
+    if (!uses_own_wind_ && steps_.use_own_wind()) uses_own_wind_ = true;
+    return;
+  }
+  play(now);
+  ask_for_ticks(now);
+  load(now);
+  ask_for_state(now);
+}
+
+void Follower::leave() {
+  play_out_.begin(0);
+  leaders_.reset();
+  other_.reset();
+  is_in_wind_ = false;
+  uses_own_wind_ = true;
+  arriving_.reset();
+  to_load_.reset();
+  leader_ = ticks_ = state_ = {};
+}
+
+void Follower::set_makeup(PictureMakeup makeup) {
+  makeup_ = std::move(makeup);
+  leaders_.reset();
+  arriving_.reset();
+  to_load_.reset();
+}
+
+Follower::Phase Follower::phase(MonoTime now) const {
+  if (leaders_ && !is_in_wind_) return Phase::kDiffers;
+  if (!heard_) return Phase::kNoLeader;
+  if (now - *heard_ > kSilentAfter) return Phase::kSilent;
+  const animation::LedSteps::Position at = steps_.position();
+  if (!leaders_ || !at.is_led || at.epoch != play_out_.epoch()) return Phase::kJoining;
+  if (!differences_.empty()) return Phase::kSameWind;
+  return at.is_exact ? Phase::kSamePicture : Phase::kJoining;
+}
+
+}  // namespace yuragi::daemon::follow

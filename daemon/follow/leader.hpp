@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/animation/animation.hpp"
+#include "daemon/animation/led_steps.hpp"
+#include "daemon/follow/questions.hpp"
+#include "engine/base/time.hpp"
+#include "engine/wind/ground/ground_wind.hpp"
+
+namespace yuragi::daemon::follow {
+
+/// Makes the numbered ticks of a daemon that leads: for its own animation, which plays them as late as all others, and
+/// for those that follow, whose questions it answers. Belongs to the I/O thread.
+class Leader {
+ public:
+  /// Sends to a subject. Never waits.
+  using Send = std::function<void(const std::string& subject, const Bytes& bytes)>;
+
+  /// For how long a tick can be asked for.
+  static constexpr std::chrono::seconds kKept{60};
+  /// The largest number of followers that wait for a state; further ones ask again.
+  static constexpr std::size_t kMaxWaiting = 64;
+
+  /// `state_bytes`: the size of the animation's state. `subject`: of the ticks.
+  Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, std::string subject,
+         animation::LedSteps& steps, Send send);
+
+  /// Begins an epoch that is later than `after`, with a number above `number`.
+  void begin_epoch(UtcTime now, std::uint64_t after, std::uint64_t number);
+  std::uint64_t epoch() const noexcept { return epoch_; }
+  std::uint64_t number() const noexcept { return number_; }
+
+  /// With the next tick. False if too many wait.
+  bool cue(const animation::SceneCue& cue);
+
+  /// Makes a tick of `periods`, which is to be played `delay` after `at`.
+  void make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods);
+
+  /// Answers a follower. What is no question is counted.
+  void answer(std::span<const std::uint8_t> question, const std::string& reply_to, MonoTime now);
+
+  /// Goes on with a state that somebody asked for.
+  void advance(MonoTime now);
+
+  /// Its scenes are others from now on: call begin_epoch() then.
+  void set_makeup(PictureMakeup makeup) { makeup_ = std::move(makeup); }
+
+  struct Counts {
+    std::uint64_t questions = 0, refused = 0, repaired_ticks = 0, states = 0;
+  };
+  const Counts& counts() const noexcept { return counts_; }
+
+ private:
+  void send_ticks(const Question& question, const std::string& reply_to);
+  void send_state(const animation::StateOrder& saved);
+
+  PictureMakeup makeup_;
+  const double rate_hz_;
+  const Nanoseconds delay_;
+  std::size_t state_bytes_;
+  const std::string subject_;
+  animation::LedSteps& steps_;
+  Send send_;
+
+  std::uint64_t epoch_ = 0, number_ = 0;
+  std::vector<wire::lead::TickCue> cues_;
+  std::deque<std::pair<std::uint64_t, Bytes>> kept_;  ///< by number
+  std::vector<std::string> waiting_;                  ///< for a state
+  MonoTime saved_{};
+  bool is_saving_ = false;
+  std::uint64_t saving_epoch_ = 0;
+  Counts counts_;
+};
+
+}  // namespace yuragi::daemon::follow

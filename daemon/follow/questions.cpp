@@ -1,0 +1,216 @@
+#include "daemon/follow/questions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/json_text.hpp"
+#include "engine/base/printable_text.hpp"
+#include "engine/base/snapshot.hpp"
+#include "engine/wire/lead/wind_tick.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::follow {
+namespace {
+
+/// The first byte of a reply.
+enum class Kind : std::uint8_t { kIntroduction = 'I', kTicks = 'T', kStatePart = 'S' };
+
+constexpr std::string_view kLeader = "leader", kTicks = "ticks", kState = "state";
+constexpr std::size_t kMaxJson_bytes = 64 * 1024;
+constexpr int kDeepest = 3;
+constexpr std::size_t kMaxName_bytes = 200;
+/// In the place of what a snapshot is made of.
+constexpr std::uint64_t kPartMark = 0x7374'6174'6570'6172;
+constexpr std::size_t kLength_bytes = 2;
+
+Failure bad(const char* clause) {
+  return {.message = clause, .kind = FailureKind::kBadData};
+}
+
+Bytes text_bytes(const nlohmann::json& json) {
+  const std::string text = json_text(json);
+  return {text.begin(), text.end()};
+}
+
+/// Null if it is no object of a few levels.
+nlohmann::json object_of(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > kMaxJson_bytes) return {};
+  const auto is_shallow = [](int depth, nlohmann::json::parse_event_t /*event*/, nlohmann::json& /*parsed*/) {
+    return depth <= kDeepest;
+  };
+  nlohmann::json json = nlohmann::json::parse(bytes.begin(), bytes.end(), is_shallow, false);
+  return json.is_object() ? json : nlohmann::json();
+}
+
+std::optional<std::uint64_t> number_of(const nlohmann::json& object, const char* key) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number_unsigned()) return std::nullopt;
+  return found->get<std::uint64_t>();
+}
+
+std::optional<double> real_of(const nlohmann::json& object, const char* key, double most) {
+  const auto found = object.find(key);
+  if (found == object.end() || !found->is_number()) return std::nullopt;
+  const auto value = found->get<double>();
+  if (!(value > 0.0 && value <= most)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::string> name_of(const nlohmann::json& json) {
+  if (!json.is_string()) return std::nullopt;
+  auto name = json.get<std::string>();
+  if (name.size() > kMaxName_bytes) return std::nullopt;
+  make_printable(name);
+  return name;
+}
+
+Result<Reply, Failure> decode_introduction(std::span<const std::uint8_t> bytes) {
+  const nlohmann::json object = object_of(bytes);
+  if (!object.is_object()) return bad("is no introduction of a leader");
+  const auto epoch = number_of(object, "epoch"), motion = number_of(object, "motion"), wind = number_of(object, "wind");
+  const auto delay_s = real_of(object, "delay", 60.0), rate_hz = real_of(object, "rate", 1000.0);
+  const auto software = name_of(object.value("software", nlohmann::json()));
+  const auto scenes = object.find("scenes");
+  if (!epoch || !motion || *motion > ~0U || !wind || !delay_s || !rate_hz || !software || scenes == object.end() ||
+      !scenes->is_array() || scenes->size() > wire::kMaxScenes) {
+    return bad("is an introduction of a leader with a key that is missing or has no such value");
+  }
+  Introduction introduction{.epoch = *epoch,
+                            .delay_s = *delay_s,
+                            .makeup = {.software = *software,
+                                       .motion = static_cast<std::uint32_t>(*motion),
+                                       .rate_hz = *rate_hz,
+                                       .wind = *wind,
+                                       .scenes = {}}};
+  for (const nlohmann::json& scene : *scenes) {
+    if (!scene.is_array() || scene.size() != 2 || !scene[1].is_number_unsigned())
+      return bad("has a scene that is none");
+    auto name = name_of(scene[0]);
+    if (!name) return bad("has a scene without a name");
+    introduction.makeup.scenes.emplace_back(std::move(*name), scene[1].get<std::uint64_t>());
+  }
+  return Reply(std::move(introduction));
+}
+
+Result<Reply, Failure> decode_ticks(std::span<const std::uint8_t> bytes) {
+  Ticks ticks;
+  while (!bytes.empty()) {
+    if (bytes.size() < kLength_bytes) return bad("ends within a tick");
+    const std::size_t size = bytes[0] + (std::size_t{bytes[1]} << 8U);
+    bytes = bytes.subspan(kLength_bytes);
+    if (size == 0 || size > wire::lead::kMaxWindTick_bytes || size > bytes.size()) return bad("ends within a tick");
+    ticks.ticks.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    bytes = bytes.subspan(size);
+  }
+  return Reply(std::move(ticks));
+}
+
+struct PartHead {
+  std::uint64_t epoch = 0, number = 0, made_of = 0, total_bytes = 0, first_byte = 0;
+  void list_state(StatePass& pass) { pass(epoch, number, made_of, total_bytes, first_byte); }
+};
+constexpr std::size_t kPartHead_bytes = 5 * sizeof(std::uint64_t);
+
+Result<Reply, Failure> decode_part(std::span<const std::uint8_t> bytes) {
+  const auto opened = opened_snapshot(bytes, kPartMark);
+  if (!opened) return opened.error();
+  if (opened->size() <= kPartHead_bytes) return bad("is too short for a part of a state");
+  PartHead head;
+  StatePass::loading(opened->first(kPartHead_bytes))(head);
+  const auto part = opened->subspan(kPartHead_bytes);
+  if (head.total_bytes > kMaxState_bytes || head.first_byte > head.total_bytes ||
+      part.size() > head.total_bytes - head.first_byte) {
+    return bad("is a part that exceeds its state");
+  }
+  return Reply(StatePart{.epoch = head.epoch,
+                         .number = head.number,
+                         .made_of = head.made_of,
+                         .total_bytes = head.total_bytes,
+                         .first_byte = head.first_byte,
+                         .bytes = Bytes(part.begin(), part.end())});
+}
+
+Bytes with_kind(Kind kind, const Bytes& bytes) {
+  Bytes reply = {static_cast<std::uint8_t>(kind)};
+  reply.insert(reply.end(), bytes.begin(), bytes.end());
+  return reply;
+}
+
+}  // namespace
+
+Bytes encode(const Question& question) {
+  nlohmann::json json = {{"ask", question.about == Question::About::kLeader  ? kLeader
+                                 : question.about == Question::About::kTicks ? kTicks
+                                                                             : kState}};
+  if (question.about != Question::About::kLeader) json["epoch"] = question.epoch;
+  if (question.about == Question::About::kTicks) {
+    json["from"] = question.from;
+    json["to"] = question.to;
+  }
+  return text_bytes(json);
+}
+
+Bytes encode(const Introduction& introduction) {
+  const PictureMakeup& makeup = introduction.makeup;
+  return with_kind(Kind::kIntroduction, text_bytes({{"epoch", introduction.epoch},
+                                                    {"delay", introduction.delay_s},
+                                                    {"software", makeup.software},
+                                                    {"motion", makeup.motion},
+                                                    {"rate", makeup.rate_hz},
+                                                    {"wind", makeup.wind},
+                                                    {"scenes", makeup.scenes}}));
+}
+
+Bytes encode(const Ticks& ticks) {
+  Bytes all;
+  for (const Bytes& tick : ticks.ticks) {
+    all.push_back(static_cast<std::uint8_t>(tick.size() & 0xFFU));
+    all.push_back(static_cast<std::uint8_t>(tick.size() >> 8U));
+    all.insert(all.end(), tick.begin(), tick.end());
+  }
+  return with_kind(Kind::kTicks, all);
+}
+
+Bytes encode(const StatePart& part) {
+  PartHead head{part.epoch, part.number, part.made_of, part.total_bytes, part.first_byte};
+  Bytes bytes;
+  StatePass::saving(bytes)(head);
+  bytes.insert(bytes.end(), part.bytes.begin(), part.bytes.end());
+  return with_kind(Kind::kStatePart, closed_snapshot(bytes, kPartMark));
+}
+
+Result<Question, Failure> decode_question(std::span<const std::uint8_t> bytes) {
+  const nlohmann::json object = object_of(bytes);
+  if (!object.is_object()) return bad("is no question");
+  const auto ask = object.find("ask");
+  if (ask == object.end() || !ask->is_string()) return bad("asks for nothing");
+  const auto& word = ask->get_ref<const std::string&>();
+  if (word == kLeader) return Question{};
+  const auto epoch = number_of(object, "epoch");
+  if (!epoch) return bad("asks without an epoch");
+  if (word == kState) return Question{.about = Question::About::kState, .epoch = *epoch};
+  const auto from = number_of(object, "from"), to = number_of(object, "to");
+  if (word != kTicks || !from || !to || *from > *to) return bad("asks for what is not known");
+  return Question{.about = Question::About::kTicks, .epoch = *epoch, .from = *from, .to = *to};
+}
+
+Result<Reply, Failure> decode_reply(std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return bad("is empty");
+  const auto rest = bytes.subspan(1);
+  switch (static_cast<Kind>(bytes[0])) {
+    case Kind::kIntroduction:
+      return decode_introduction(rest);
+    case Kind::kTicks:
+      return decode_ticks(rest);
+    case Kind::kStatePart:
+      return decode_part(rest);
+  }
+  return bad("is of no known kind");
+}
+
+}  // namespace yuragi::daemon::follow
