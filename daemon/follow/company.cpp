@@ -105,7 +105,7 @@ void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now,
     lead(now);
   }
   if (leads_) {
-    leader_.make_tick(wind, now, periods);
+    leader_.make_ticks(wind, now, periods);
     leader_.advance(now.mono);
   } else {
     follower_.advance(now.mono);

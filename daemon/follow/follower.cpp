@@ -101,22 +101,23 @@ void Follower::take(const StatePart& part, MonoTime now) {
   if (!has_same_scenes() || part.epoch != play_out_.epoch() || part.made_of != makeup_.hash() || to_load_ ||
       is_loading_)
     return;
-  if (part.first_byte == 0) {
-    arriving_ = part;
-  } else if (arriving_ && arriving_->number == part.number && arriving_->total_bytes == part.total_bytes &&
-             arriving_->bytes.size() == part.first_byte) {
-    arriving_->bytes.insert(arriving_->bytes.end(), part.bytes.begin(), part.bytes.end());
-  } else {
-    arriving_.reset();  // a part is lost: it asks again
-    return;
+  if (!arriving_ || arriving_->number != part.number || arriving_->total_bytes != part.total_bytes)
+    arriving_ = {.number = part.number, .total_bytes = part.total_bytes, .arrived_bytes = 0, .parts = {}};
+  if (!arriving_->parts.emplace(part.first_byte, part.bytes).second) return;
+  arriving_->arrived_bytes += part.bytes.size();
+  if (arriving_->arrived_bytes < arriving_->total_bytes) return;
+  auto order = std::make_unique<animation::StateOrder>();
+  order->kind = animation::StateOrder::Kind::kLoad;
+  order->number = part.number;
+  order->shown.resize(makeup_.scenes.size());
+  bool is_whole = true;
+  for (const auto& [first_byte, bytes] : arriving_->parts) {
+    is_whole = is_whole && first_byte == order->state.size();
+    order->state.insert(order->state.end(), bytes.begin(), bytes.end());
   }
-  if (arriving_->bytes.size() < arriving_->total_bytes) return;
-  to_load_ = std::make_unique<animation::StateOrder>();
-  to_load_->kind = animation::StateOrder::Kind::kLoad;
-  to_load_->number = arriving_->number;
-  to_load_->state = std::move(arriving_->bytes);
-  to_load_->shown.resize(makeup_.scenes.size());
   arriving_.reset();
+  if (!is_whole) return refuse("the parts of a state overlap");
+  to_load_ = std::move(order);
   load(now);
 }
 
@@ -148,16 +149,14 @@ const wind::ground::DrivingWind* Follower::wind() const noexcept {
 }
 
 void Follower::ask_for_ticks(MonoTime now) {
-  const auto gap = play_out_.first_gap();
-  if (!gap) {
-    ticks_ = {};
-    return;
-  }
   if (!ticks_.is_due(now)) return;
-  if (!ticks_.asked) ++counts_.gaps;
-  ticks_.ask(now, kAskTicks, kAskTicks);
-  ask_(
-      encode(Question{.about = Question::About::kTicks, .epoch = play_out_.epoch(), .from = gap->from, .to = gap->to}));
+  for (const PlayOut::Gap& gap : play_out_.gaps()) {
+    if (gap.to == 0) break;
+    ++counts_.gaps;
+    ticks_.ask(now, kAskTicks, kAskTicks);
+    ask_(
+        encode(Question{.about = Question::About::kTicks, .epoch = play_out_.epoch(), .from = gap.from, .to = gap.to}));
+  }
 }
 
 void Follower::ask_for_state(MonoTime now) {

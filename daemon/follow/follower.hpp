@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -117,8 +118,12 @@ class Follower {
   bool uses_own_wind_ = true;
 
   Asking leader_, ticks_, state_;
-  /// Of the state that arrives in parts.
-  std::optional<StatePart> arriving_;
+  /// A state that arrives in parts, in any order.
+  struct Arriving {
+    std::uint64_t number = 0, total_bytes = 0, arrived_bytes = 0;
+    std::map<std::uint64_t, Bytes> parts;  ///< by their first byte
+  };
+  std::optional<Arriving> arriving_;
   std::unique_ptr<animation::StateOrder> to_load_;
   bool is_loading_ = false;
   Counts counts_;

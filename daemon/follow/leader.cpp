@@ -41,6 +41,15 @@ bool Leader::cue(const animation::SceneCue& cue) {
   return true;
 }
 
+void Leader::make_ticks(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods) {
+  const Nanoseconds period = from_seconds(1.0 / rate_hz_);
+  if (periods * period > delay_) return make_tick(wind, at, periods);
+  for (std::uint32_t left = periods; left-- > 0;) {
+    const Nanoseconds before = left * period;
+    make_tick(wind, {.mono = at.mono - before, .utc = at.utc - before}, 1);
+  }
+}
+
 void Leader::make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods) {
   number_ += periods;
   wire::lead::WindTick tick{

@@ -40,8 +40,9 @@ class Leader {
   /// With the next tick. False if too many wait.
   bool cue(const animation::SceneCue& cue);
 
-  /// Makes a tick of `periods`, which is to be played `delay` after `at`.
-  void make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods);
+  /// Makes the ticks of the last `periods`, which end at `at`, in this wind; each is played `delay` after its time. So
+  /// a halt that is shorter than the delay is not seen; after a longer one there is one tick of all periods.
+  void make_ticks(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods);
 
   /// Answers a follower. What is no question is counted.
   void answer(std::span<const std::uint8_t> question, const std::string& reply_to, MonoTime now);
@@ -58,6 +59,7 @@ class Leader {
   const Counts& counts() const noexcept { return counts_; }
 
  private:
+  void make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods);
   void send_ticks(const Question& question, const std::string& reply_to);
   void send_state(const animation::StateOrder& saved);
 

@@ -82,16 +82,18 @@ bool PlayOut::go_back_to(std::uint64_t number) {
   return true;
 }
 
-std::optional<PlayOut::Gap> PlayOut::first_gap() const noexcept {
+std::array<PlayOut::Gap, PlayOut::kMaxGaps> PlayOut::gaps() const noexcept {
+  std::array<Gap, kMaxGaps> gaps{};
+  std::size_t count = 0;
   std::uint64_t before = played_;
   const std::uint64_t first_kept = newest_ >= kKept ? newest_ - kKept + 1 : 1;
-  for (std::uint64_t number = std::max(before + 1, first_kept); number <= newest_; ++number) {
+  for (std::uint64_t number = std::max(before + 1, first_kept); number <= newest_ && count < kMaxGaps; ++number) {
     const wire::lead::WindTick* const tick = at(number);
     if (tick == nullptr) continue;
-    if (number - tick->periods > before) return Gap{.from = before + 1, .to = number - tick->periods};
+    if (number - tick->periods > before) gaps[count++] = {.from = before + 1, .to = number - tick->periods};
     before = number;
   }
-  return std::nullopt;
+  return gaps;
 }
 
 }  // namespace yuragi::daemon::follow

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -42,8 +43,9 @@ class PlayOut {
   struct Gap {
     std::uint64_t from = 0, to = 0;  ///< the numbers of the first and the last period in it
   };
-  /// The first gap in what next() has not returned yet.
-  std::optional<Gap> first_gap() const noexcept;
+  static constexpr std::size_t kMaxGaps = 8;
+  /// The first gaps in what next() has not returned yet; the others are empty, and `to` is 0.
+  std::array<Gap, kMaxGaps> gaps() const noexcept;
 
   /// The number of the newest tick; 0: none.
   std::uint64_t newest() const noexcept { return newest_; }
