@@ -3,7 +3,7 @@
 # the same Debian packages.
 #
 #   config/package.sh           for this machine's processor; with the viewer for browsers where config/setup.sh --web has installed
-#                               emscripten
+#                               emscripten; daemons can share one wind where config/setup.sh --nats has installed libnats-dev
 #   config/package.sh --arm64   for arm64 (Raspberry Pi 4 and 5), built here on amd64 with the libraries of config/arm64_sysroot.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,9 +11,11 @@ cd "$(dirname "$0")/.."
 case "${1:-}" in
   "")
     preset=package
+    sysroot=
     config/setup.sh ;;
   --arm64)
     preset=package-arm64
+    sysroot=build/arm64-sysroot
     export DEB_HOST_ARCH=arm64 # dpkg-shlibdeps looks into the programs by the tools for it
     config/setup.sh --arm64
     config/arm64_sysroot.sh ;;
@@ -22,7 +24,9 @@ esac
 built=build/$preset
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct) # the date of all that is in it
 export SOURCE_DATE_EPOCH
-cmake --preset $preset --log-level=WARNING
+nats=OFF
+[ ! -e "$sysroot/usr/include/nats/nats.h" ] || nats=ON
+cmake --preset $preset --log-level=WARNING -D YURAGI_NATS=$nats
 cmake --build --preset $preset
 rm -rf $built/package
 (cd $built && cpack -G DEB >cpack.log) || { cat $built/cpack.log >&2; exit 1; }

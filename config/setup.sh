@@ -4,6 +4,7 @@
 #
 #   config/setup.sh          build and run
 #   config/setup.sh --web    and what the viewer for browsers is built with
+#   config/setup.sh --nats   and the library by which daemons share one wind
 #   config/setup.sh --test   and what the tests and the sanitizer builds need besides
 #   config/setup.sh --arm64  and what a package for arm64 is built with here
 #   config/setup.sh --list   prints the names of the packages of --test, as Debian 12 has them
@@ -32,6 +33,9 @@ build_packages=(
 web_packages=(
   emscripten brotli # WebAssembly, and its form on the wire
 )
+nats_packages=(
+  libnats-dev
+)
 arm64_packages=(
   g++-aarch64-linux-gnu qemu-user-static # its compiler; runs its programs
 )
@@ -46,7 +50,7 @@ test_packages=(
   puredata-core python3-yaml                              # run and read examples
   avahi-daemon avahi-utils dbus-daemon iproute2           # services that a network's programs find, in networks of a test's own
   nginx-light caddy                                       # proxies in front of the page
-  libnats-dev nats-server                                 # the link between daemons, and its servers
+  nats-server                                             # between daemons that share one wind
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
@@ -93,7 +97,7 @@ finish() { :; }
 case "${1:-}" in
   "") ;;
   --test)
-    packages+=("${test_packages[@]}" "${web_packages[@]}" "${arm64_packages[@]}")
+    packages+=("${test_packages[@]}" "${web_packages[@]}" "${nats_packages[@]}" "${arm64_packages[@]}")
     command -v npm >/dev/null || packages+=(npm) # Node.js of others brings its own
     finish() {
       unpack chrony
@@ -101,9 +105,10 @@ case "${1:-}" in
       install_from_npm node_red
     } ;;
   --web) packages+=("${web_packages[@]}") ;;
+  --nats) packages+=("${nats_packages[@]}") ;;
   --arm64) packages+=("${arm64_packages[@]}") ;;
-  --list) printf '%s\n' "${build_packages[@]%%|*}" "${test_packages[@]}" "${web_packages[@]}" "${arm64_packages[@]}"; exit 0 ;;
-  *) echo "usage: config/setup.sh [--web | --test | --arm64 | --list]" >&2; exit 64 ;;
+  --list) printf '%s\n' "${build_packages[@]%%|*}" "${test_packages[@]}" "${web_packages[@]}" "${nats_packages[@]}" "${arm64_packages[@]}"; exit 0 ;;
+  *) echo "usage: config/setup.sh [--web | --nats | --test | --arm64 | --list]" >&2; exit 64 ;;
 esac
 
 installed() { [ -n "${is_installed[$1]-}" ]; } # PACKAGE
