@@ -34,6 +34,11 @@ NatsSettings link_settings(const settings::LeadConfig& config, const std::string
 
 }  // namespace
 
+void check_company(const settings::Config& config) {
+  if (!config.wind.lead.is_in_company()) return;
+  if (const auto refusal = NatsLink::refusal()) throw settings::ConfigError("[wind] lead, follow: " + *refusal);
+}
+
 Company::Company(const settings::Config& config, std::size_t state_bytes, animation::LedSteps& steps, Instant now,
                  std::function<void()> on_arrival, Follower::Listener listener)
     : config_(config.wind.lead),
@@ -55,7 +60,6 @@ Company::Company(const settings::Config& config, std::size_t state_bytes, animat
       link_(link_settings(config_, makeup_.software),
             config_.lead.empty() ? std::vector{ticks_subject_} : std::vector{ticks_subject_, questions_subject_},
             std::move(on_arrival)) {
-  if (const auto refusal = NatsLink::refusal()) throw settings::ConfigError("[wind] lead, follow: " + *refusal);
   if (leads_) lead(now);
 }
 

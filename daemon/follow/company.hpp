@@ -16,6 +16,9 @@
 
 namespace yuragi::daemon::follow {
 
+/// Throws ConfigError if the configuration leads or follows, and this build has no NATS.
+void check_company(const settings::Config& config);
+
 /// A daemon's part among those that share one wind by way of NATS: it leads, it follows, or as a stand-by it follows
 /// and leads while no leader is heard. Subjects, which a server's permissions can name (CHANNEL is [wind] channel):
 ///
@@ -27,7 +30,7 @@ namespace yuragi::daemon::follow {
 class Company {
  public:
   /// `state_bytes`: the size of the animation's state. `on_arrival`: called on another thread when take() has something
-  /// to do. Throws ConfigError if this build has no NATS.
+  /// to do. The configuration is one that check_company() has accepted.
   Company(const settings::Config& config, std::size_t state_bytes, animation::LedSteps& steps, Instant now,
           std::function<void()> on_arrival, Follower::Listener listener);
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "daemon/animation/animation.hpp"
+#include "daemon/follow/company.hpp"
 #include "daemon/sensing/fallback_recording.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/same_device.hpp"
@@ -11,6 +12,7 @@
 namespace yuragi::daemon::service {
 
 void check(const settings::Config& config) {
+  follow::check_company(config);
   settings::open_sensors(config.sensors);
   if (config.wind.fallback) sensing::check_fallback(*config.wind.fallback);
   animation::checked_scenes_message(animation::Animation(config, sensing::make_gust_noise(config)).describe());

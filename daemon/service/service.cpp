@@ -360,6 +360,7 @@ class Service::Io {
   // ---- one wind for several daemons ----
 
   void join_company(const settings::Config& config) {
+    follow::check_company(config);
     const Nanoseconds delay = from_seconds(config.wind.lead.delay_s);
     const double begun_s = std::max(0.0, seconds(started_.utc.time_since_epoch() - delay));
     led_.emplace(static_cast<std::uint64_t>(begun_s * rate_hz_), rate_hz_, delay);

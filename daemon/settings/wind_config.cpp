@@ -179,7 +179,8 @@ const Fields<WindTable>& wind_fields() {
       {{.name = "credentials",
         .default_value = std::string{},
         .help = "a file with what the NATS server knows this daemon by: NAME:PASSWORD, or the seed of an nkey; empty: "
-                "nothing. Only its owner may be able to read it"},
+                "nothing. Only its owner may be able to read it",
+        .is_secret_file = true},
        of_lead(&LeadConfig::credentials)},
       {{.name = "authorities",
         .default_value = std::string{},
