@@ -1,10 +1,12 @@
 #include "daemon/follow/company.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "daemon/settings/config_error.hpp"
 #include "engine/wire/lead/wind_tick.hpp"
@@ -25,14 +27,19 @@ std::string list_of(const std::vector<std::string>& texts) {
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-NatsSettings link_settings(const settings::LeadConfig& config, const std::string& software) {
-  return {.servers = config.follow.empty() ? config.lead : config.follow,
-          .name = software,
-          .credentials = config.credentials,
-          .authorities = config.authorities};
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
 }  // namespace
+
+NatsSettings link_settings(const settings::LeadConfig& config, std::string name) {
+  return {.servers = config.follow.empty() ? config.lead : config.follow,
+          .name = std::move(name),
+          .credentials = config.credentials,
+          .authorities = config.authorities};
+}
 
 void check_company(const settings::Config& config) {
   if (!config.wind.lead.is_in_company()) return;
@@ -44,6 +51,8 @@ Company::Company(const settings::Config& config, std::size_t state_bytes, animat
     : config_(config.wind.lead),
       ticks_subject_(config_.channel + ".tick"),
       questions_subject_(config_.channel + ".ask"),
+      reports_subject_(config_.channel + ".node"),
+      node_(config_.node.empty() ? host_name() : config_.node),
       steps_(steps),
       makeup_(makeup_of(config)),
       leader_(makeup_, config.animation.rate_hz, from_seconds(config_.delay_s), state_bytes, ticks_subject_, steps,
@@ -58,7 +67,8 @@ Company::Company(const settings::Config& config, std::size_t state_bytes, animat
       new_epoch_(now.mono),
       leave_after_(kHangsAfter),
       link_(link_settings(config_, makeup_.software),
-            config_.lead.empty() ? std::vector{ticks_subject_} : std::vector{ticks_subject_, questions_subject_},
+            config_.lead.empty() ? std::vector{ticks_subject_}
+                                 : std::vector{ticks_subject_, questions_subject_, reports_subject_},
             std::move(on_arrival)) {
   if (leads_) lead(now);
 }
@@ -85,6 +95,8 @@ void Company::take(MonoTime now) {
       }
     } else if (message.subject == questions_subject_) {
       if (leads_) leader_.answer(message.bytes, message.reply_to, now);
+    } else if (message.subject == reports_subject_) {
+      leader_.take_report(message.bytes, now);
     } else if (!leads_) {
       follower_.take_reply(message.bytes, now);
     }
@@ -137,6 +149,16 @@ void Company::change(const settings::Config& config, const Instant& now) {
   if (leads_) lead(now);
 }
 
+void Company::report(NodeReport report, MonoTime now) {
+  report.name = node_;
+  report.software = makeup_.software;
+  report.part = part(now);
+  const animation::LedSteps::Position at = steps_.position();
+  report.tick = at.number;
+  report.behind_s = at.behind_s;
+  link_.publish(reports_subject_, encode(report));
+}
+
 std::string Company::trouble(MonoTime now) const {
   const NatsLink::State link = link_.state();
   if (!link.trouble.empty()) return link.trouble;
@@ -155,39 +177,40 @@ std::string Company::trouble(MonoTime now) const {
   }
 }
 
+std::string Company::part(MonoTime now) const {
+  if (leads_) return "leads";
+  switch (follower_.phase(now)) {
+    case Follower::Phase::kSamePicture:
+      return "the same picture as its leader";
+    case Follower::Phase::kSameWind:
+      return "the leader's wind, another picture: " + list_of(follower_.differences());
+    case Follower::Phase::kJoining:
+      return "the leader's wind; its picture comes";
+    default:
+      return "its own wind, waits for a leader";
+  }
+}
+
 Company::Status Company::status(MonoTime now) const {
   const NatsLink::State link = link_.state();
   Status status{.server = link.server,
                 .channel = config_.channel,
-                .part = {},
+                .part = part(now),
                 .trouble = trouble(now),
                 .messages = link.sent + link.received,
                 .bytes = link.sent_bytes + link.received_bytes,
+                .nodes = {},
                 .last = heard_};
-  const Follower::Counts& counts = follower_.counts();
   if (leads_) {
-    status.part = fmt::format("leads; {} questions answered, {} ticks sent again, {} states",
-                              leader_.counts().questions, leader_.counts().repaired_ticks, leader_.counts().states);
-    return status;
+    const Leader::Counts& counts = leader_.counts();
+    status.part += fmt::format("; {} questions answered, {} ticks sent again, {} states, {} nodes", counts.questions,
+                               counts.repaired_ticks, counts.states, leader_.fleet().nodes(now).size());
+    status.nodes = leader_.fleet().attention(node_, now);
+  } else {
+    const Follower::Counts& counts = follower_.counts();
+    status.part += fmt::format("; {} ticks, {} lost and had again, {} without a tick, {} states", counts.ticks,
+                               counts.repaired, steps_.position().without_tick, counts.states);
   }
-  const char* part = "waits for a leader";
-  switch (follower_.phase(now)) {
-    case Follower::Phase::kSamePicture:
-      part = "the same picture as its leader";
-      break;
-    case Follower::Phase::kSameWind:
-      part = "the leader's wind, another picture";
-      break;
-    case Follower::Phase::kJoining:
-      part = "the leader's wind; its picture comes";
-      break;
-    default:
-      break;
-  }
-  status.part = fmt::format("{}; {} ticks, {} lost and had again, {} without a tick, {} states", part, counts.ticks,
-                            counts.repaired, steps_.position().without_tick, counts.states);
-  if (!follower_.differences().empty() && status.trouble.empty())
-    status.part += ": " + list_of(follower_.differences());
   return status;
 }
 

@@ -19,11 +19,15 @@ namespace yuragi::daemon::follow {
 /// Throws ConfigError if the configuration leads or follows, and this build has no NATS.
 void check_company(const settings::Config& config);
 
+/// How the servers of this configuration are connected to, under this name.
+NatsSettings link_settings(const settings::LeadConfig& config, std::string name);
+
 /// A daemon's part among those that share one wind by way of NATS: it leads, it follows, or as a stand-by it follows
 /// and leads while no leader is heard. Subjects, which a server's permissions can name (CHANNEL is [wind] channel):
 ///
 ///     CHANNEL.tick   from the leader to all
 ///     CHANNEL.ask    from followers to the leader, who replies to _INBOX.>
+///     CHANNEL.node   from each daemon to those that may lead: what becomes of it (Fleet)
 ///
 /// A leader that hears another one with a later epoch takes over again, but a stand-by gives way. Belongs to the I/O
 /// thread; nothing here waits.
@@ -51,12 +55,16 @@ class Company {
   /// Its scenes are others from now on, if the configuration's are.
   void change(const settings::Config& config, const Instant& now);
 
+  /// What becomes of this daemon, for the list of all: call it about once a second. `name` and `part` are filled in.
+  void report(NodeReport report, MonoTime now);
+
   struct Status {
     std::string server, channel;
     std::string part;     ///< "leads", "the same picture as its leader", ...
     std::string trouble;  ///< what is wrong, and what to do; empty: nothing
     std::uint64_t messages = 0, bytes = 0;
-    std::optional<MonoTime> last;  ///< when a tick was sent or heard last
+    std::vector<std::string> nodes;  ///< what needs attention at other nodes, if this one leads
+    std::optional<MonoTime> last;    ///< when a tick was sent or heard last
   };
   Status status(MonoTime now) const;
 
@@ -64,9 +72,11 @@ class Company {
   void lead(const Instant& now);
   void leave_hanging_server(MonoTime now);
   std::string trouble(MonoTime now) const;
+  std::string part(MonoTime now) const;
 
   const settings::LeadConfig config_;
-  const std::string ticks_subject_, questions_subject_;
+  const std::string ticks_subject_, questions_subject_, reports_subject_;
+  const std::string node_;
   animation::LedSteps& steps_;
   PictureMakeup makeup_;
   Leader leader_;

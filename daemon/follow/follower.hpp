@@ -91,6 +91,7 @@ class Follower {
   void take(const Introduction& introduction, MonoTime now);
   void take(const Ticks& ticks, MonoTime now);
   void take(const StatePart& part, MonoTime now);
+  void take(const NodeList& /*list*/, MonoTime /*now*/) {}  // for `yuragi fleet`
   void play(MonoTime now);
   void ask_for_ticks(MonoTime now);
   void ask_for_state(MonoTime now);

@@ -10,6 +10,7 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/led_steps.hpp"
+#include "daemon/follow/fleet.hpp"
 #include "daemon/follow/questions.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
@@ -27,6 +28,9 @@ class Leader {
   static constexpr std::chrono::seconds kKept{60};
   /// The largest number of followers that wait for a state; further ones ask again.
   static constexpr std::size_t kMaxWaiting = 64;
+  /// The most that is sent as introductions and as ticks once more, so that no follower's questions fill the link.
+  /// Further questions are refused; followers ask again.
+  static constexpr double kMaxReplies_bytes_s = 8e6;
 
   /// `state_bytes`: the size of the animation's state. `subject`: of the ticks.
   Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, std::string subject,
@@ -50,6 +54,10 @@ class Leader {
   /// Goes on with a state that somebody asked for.
   void advance(MonoTime now);
 
+  /// Takes what a node reports of itself. What is no report is counted.
+  void take_report(std::span<const std::uint8_t> bytes, MonoTime now);
+  const Fleet& fleet() const noexcept { return fleet_; }
+
   /// Its scenes are others from now on: call begin_epoch() then.
   void set_makeup(PictureMakeup makeup) { makeup_ = std::move(makeup); }
 
@@ -60,6 +68,7 @@ class Leader {
 
  private:
   void make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods);
+  void reply(const std::string& reply_to, const Bytes& bytes);
   void send_ticks(const Question& question, const std::string& reply_to);
   void send_state(const animation::StateOrder& saved);
 
@@ -74,9 +83,11 @@ class Leader {
   std::uint64_t epoch_ = 0, number_ = 0;
   std::vector<wire::lead::TickCue> cues_;
   std::deque<std::pair<std::uint64_t, Bytes>> kept_;  ///< by number
+  double reply_bytes_left_ = kMaxReplies_bytes_s;     ///< of a second's
   std::vector<std::string> waiting_;                  ///< for a state
   MonoTime saved_{};
   bool is_saving_ = false;
+  Fleet fleet_;
   std::uint64_t saving_epoch_ = 0;
   Counts counts_;
 };

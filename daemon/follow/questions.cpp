@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/base/json_text.hpp"
+#include "daemon/follow/small_json.hpp"
 #include "engine/base/printable_text.hpp"
 #include "engine/base/snapshot.hpp"
 #include "engine/wire/lead/wind_tick.hpp"
@@ -18,11 +18,9 @@ namespace yuragi::daemon::follow {
 namespace {
 
 /// The first byte of a reply.
-enum class Kind : std::uint8_t { kIntroduction = 'I', kTicks = 'T', kStatePart = 'S' };
+enum class Kind : std::uint8_t { kIntroduction = 'I', kTicks = 'T', kStatePart = 'S', kNodes = 'N' };
 
-constexpr std::string_view kLeader = "leader", kTicks = "ticks", kState = "state";
-constexpr std::size_t kMaxJson_bytes = 64 * 1024;
-constexpr int kDeepest = 3;
+constexpr std::string_view kLeader = "leader", kTicks = "ticks", kState = "state", kFleet = "fleet";
 constexpr std::size_t kMaxName_bytes = 200;
 /// In the place of what a snapshot is made of.
 constexpr std::uint64_t kPartMark = 0x7374'6174'6570'6172;
@@ -30,21 +28,6 @@ constexpr std::size_t kLength_bytes = 2;
 
 Failure bad(const char* clause) {
   return {.message = clause, .kind = FailureKind::kBadData};
-}
-
-Bytes text_bytes(const nlohmann::json& json) {
-  const std::string text = json_text(json);
-  return {text.begin(), text.end()};
-}
-
-/// Null if it is no object of a few levels.
-nlohmann::json object_of(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() > kMaxJson_bytes) return {};
-  const auto is_shallow = [](int depth, nlohmann::json::parse_event_t /*event*/, nlohmann::json& /*parsed*/) {
-    return depth <= kDeepest;
-  };
-  nlohmann::json json = nlohmann::json::parse(bytes.begin(), bytes.end(), is_shallow, false);
-  return json.is_object() ? json : nlohmann::json();
 }
 
 std::optional<std::uint64_t> number_of(const nlohmann::json& object, const char* key) {
@@ -70,7 +53,7 @@ std::optional<std::string> name_of(const nlohmann::json& json) {
 }
 
 Result<Reply, Failure> decode_introduction(std::span<const std::uint8_t> bytes) {
-  const nlohmann::json object = object_of(bytes);
+  const nlohmann::json object = small_json(bytes);
   if (!object.is_object()) return bad("is no introduction of a leader");
   const auto epoch = number_of(object, "epoch"), motion = number_of(object, "motion"), wind = number_of(object, "wind");
   const auto delay_s = real_of(object, "delay", 60.0), rate_hz = real_of(object, "rate", 1000.0);
@@ -135,6 +118,20 @@ Result<Reply, Failure> decode_part(std::span<const std::uint8_t> bytes) {
                          .bytes = Bytes(part.begin(), part.end())});
 }
 
+std::string_view word_of(Question::About about) {
+  switch (about) {
+    case Question::About::kLeader:
+      return kLeader;
+    case Question::About::kTicks:
+      return kTicks;
+    case Question::About::kState:
+      return kState;
+    case Question::About::kFleet:
+      return kFleet;
+  }
+  return {};
+}
+
 Bytes with_kind(Kind kind, const Bytes& bytes) {
   Bytes reply = {static_cast<std::uint8_t>(kind)};
   reply.insert(reply.end(), bytes.begin(), bytes.end());
@@ -144,26 +141,24 @@ Bytes with_kind(Kind kind, const Bytes& bytes) {
 }  // namespace
 
 Bytes encode(const Question& question) {
-  nlohmann::json json = {{"ask", question.about == Question::About::kLeader  ? kLeader
-                                 : question.about == Question::About::kTicks ? kTicks
-                                                                             : kState}};
-  if (question.about != Question::About::kLeader) json["epoch"] = question.epoch;
+  nlohmann::json json = {{"ask", word_of(question.about)}};
+  if (question.epoch != 0) json["epoch"] = question.epoch;
   if (question.about == Question::About::kTicks) {
     json["from"] = question.from;
     json["to"] = question.to;
   }
-  return text_bytes(json);
+  return bytes_of(json);
 }
 
 Bytes encode(const Introduction& introduction) {
   const PictureMakeup& makeup = introduction.makeup;
-  return with_kind(Kind::kIntroduction, text_bytes({{"epoch", introduction.epoch},
-                                                    {"delay", introduction.delay_s},
-                                                    {"software", makeup.software},
-                                                    {"motion", makeup.motion},
-                                                    {"rate", makeup.rate_hz},
-                                                    {"wind", makeup.wind},
-                                                    {"scenes", makeup.scenes}}));
+  return with_kind(Kind::kIntroduction, bytes_of({{"epoch", introduction.epoch},
+                                                  {"delay", introduction.delay_s},
+                                                  {"software", makeup.software},
+                                                  {"motion", makeup.motion},
+                                                  {"rate", makeup.rate_hz},
+                                                  {"wind", makeup.wind},
+                                                  {"scenes", makeup.scenes}}));
 }
 
 Bytes encode(const Ticks& ticks) {
@@ -176,6 +171,10 @@ Bytes encode(const Ticks& ticks) {
   return with_kind(Kind::kTicks, all);
 }
 
+Bytes encode(const NodeList& list) {
+  return with_kind(Kind::kNodes, list_bytes(list));
+}
+
 Bytes encode(const StatePart& part) {
   PartHead head{part.epoch, part.number, part.made_of, part.total_bytes, part.first_byte};
   Bytes bytes;
@@ -185,12 +184,13 @@ Bytes encode(const StatePart& part) {
 }
 
 Result<Question, Failure> decode_question(std::span<const std::uint8_t> bytes) {
-  const nlohmann::json object = object_of(bytes);
+  const nlohmann::json object = small_json(bytes);
   if (!object.is_object()) return bad("is no question");
   const auto ask = object.find("ask");
   if (ask == object.end() || !ask->is_string()) return bad("asks for nothing");
   const auto& word = ask->get_ref<const std::string&>();
   if (word == kLeader) return Question{};
+  if (word == kFleet) return Question{.about = Question::About::kFleet};
   const auto epoch = number_of(object, "epoch");
   if (!epoch) return bad("asks without an epoch");
   if (word == kState) return Question{.about = Question::About::kState, .epoch = *epoch};
@@ -209,6 +209,9 @@ Result<Reply, Failure> decode_reply(std::span<const std::uint8_t> bytes) {
       return decode_ticks(rest);
     case Kind::kStatePart:
       return decode_part(rest);
+    case Kind::kNodes:
+      if (auto list = decode_node_list(rest)) return Reply(std::move(*list));
+      return bad("is no list of nodes");
   }
   return bad("is of no known kind");
 }

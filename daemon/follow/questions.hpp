@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "daemon/follow/fleet.hpp"
 #include "daemon/follow/same_picture.hpp"
 #include "engine/base/result.hpp"
 
@@ -21,6 +22,7 @@ struct Question {
     kLeader,  ///< who leads, with what: Introduction
     kTicks,   ///< those of an epoch from one number to another: Ticks, as far as they are still there
     kState,   ///< the state of its scenes: StateParts
+    kFleet,   ///< the daemons that it has heard: NodeLists
   };
   About about = About::kLeader;
   std::uint64_t epoch = 0, from = 0, to = 0;
@@ -46,7 +48,7 @@ struct StatePart {
   Bytes bytes;
 };
 
-using Reply = std::variant<Introduction, Ticks, StatePart>;
+using Reply = std::variant<Introduction, Ticks, StatePart, NodeList>;
 
 /// The most bytes of ticks or of a state in one message; NATS takes 1 MB.
 inline constexpr std::size_t kMostInMessage_bytes = 128 * 1024;
@@ -57,6 +59,7 @@ Bytes encode(const Question& question);
 Bytes encode(const Introduction& introduction);
 Bytes encode(const Ticks& ticks);
 Bytes encode(const StatePart& part);
+Bytes encode(const NodeList& list);
 
 /// A failure (kBadData) has a clause without a subject.
 Result<Question, Failure> decode_question(std::span<const std::uint8_t> bytes);

@@ -70,6 +70,7 @@ namespace asio = boost::asio;
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 /// The interval at which what could not be opened at the start is tried again.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
+constexpr auto kReportInterval = std::chrono::seconds(1);
 constexpr auto kMeansInterval = std::chrono::hours(1);
 /// Until the answer to the request for a restart has been sent.
 constexpr auto kRestartAfter = std::chrono::milliseconds(500);
@@ -381,6 +382,21 @@ class Service::Io {
                       {.scene = cue.scene, .shown = cue.shown, .hide_others = cue.hide_others, .over_s = cue.over_s});
                   parameters_.note_change();
                 }});
+  }
+
+  void report_to_company(const wire::Sensors& status) {
+    const MonoTime now = clock_.now().mono;
+    if (now < next_report_) return;
+    next_report_ = now + kReportInterval;
+    company_->report({.name = {},
+                      .software = {},
+                      .part = {},
+                      .wind_m_s = speed_of(status.wind.wind),
+                      .wind_from_deg = wind::direction_from_deg(status.wind.wind),
+                      .tick = 0,
+                      .behind_s = 0.0,
+                      .attention = state::needs_attention(status)},
+                     now);
   }
 
   void take_from_company() {
@@ -731,6 +747,7 @@ class Service::Io {
     contain("the status", [this] {
       const wire::Sensors status = publish_status();
       manager_.report_status(status);
+      if (company_) report_to_company(status);
       report_ready();
       if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
       if (feeds_ && !feeds_->is_empty()) {
@@ -800,7 +817,11 @@ class Service::Io {
         status.troubles.push_back(std::move(trouble));
     }
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
-    if (company_) status.feeds.push_back(to_wire(company_->status(now), now));
+    if (company_) {
+      const follow::Company::Status company = company_->status(now);
+      status.feeds.push_back(to_wire(company, now));
+      status.troubles.insert(status.troubles.end(), company.nodes.begin(), company.nodes.end());
+    }
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
     if (stream_.has_untrusted_clients() || (web_ && web_->has_untrusted_clients())) {
@@ -926,6 +947,7 @@ class Service::Io {
   std::optional<platform::ClockWatch> clock_watch_;  ///< if screens are in step by this machine's clock
   std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
   Manager manager_{options_.with_scenes};
+  MonoTime next_report_{};
   std::optional<MonoTime> loaded_at_;       ///< a leader's state
   std::optional<follow::Company> company_;  ///< nullopt: it neither leads nor follows
   bool is_up_ = false;                      ///< it has begun, with its first frame if it has scenes

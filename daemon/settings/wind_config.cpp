@@ -176,6 +176,11 @@ const Fields<WindTable>& wind_fields() {
         .help = "how the subjects at the NATS server begin: another one for each leader"},
        of_lead(&LeadConfig::channel),
        channel_of},
+      {{.name = "node",
+        .default_value = std::string{},
+        .help = "what this daemon is called in the list of all, `yuragi fleet`: \"room 3, north wall\"; empty: the "
+                "machine's name"},
+       of_lead(&LeadConfig::node)},
       {{.name = "credentials",
         .default_value = std::string{},
         .help = "a file with what the NATS server knows this daemon by: NAME:PASSWORD, or the seed of an nkey; empty: "

@@ -27,6 +27,7 @@ struct LeadConfig {
   double delay_s = 0.0;                   ///< from the making of a tick to its playing
   std::string channel = {};               ///< how the leader's subjects begin
   std::string credentials = {};           ///< a file; empty: none
+  std::string node = {};                  ///< what this daemon is called among all; empty: the machine's name
   std::string authorities = {};           ///< a file of certificates, PEM; empty: the system's
 
   /// Returns true if its ticks have numbers, which other daemons know.

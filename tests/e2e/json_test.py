@@ -12,9 +12,10 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
-from programs import HANG_S, Program
+from programs import HANG_S, Program, free_port
 
 BIN, ROOT = (os.path.abspath(word) for word in (sys.argv.pop(1), sys.argv.pop(1)))
 YURAGI = os.path.join(BIN, "yuragi")
@@ -66,6 +67,7 @@ WITHOUT_A_TABLE = {
 # Commands with --json: their arguments, and where in the table a text stands that the JSON must hold, too.
 TABLES = {
     "status": (["--connect", "ADDRESS"], [r"^  - (sensor garden is \w+)", r"^scene (\S+) ", r"^(made-up|garden|played) +(\S+) "]),
+    "fleet": (["--config", "FLEET"], [r"^(roof)$", r"^  (leads)$", r", (yuragi \S+)$"]),
     "doctor": (["--config", "CONFIG", "--connect", "ADDRESS"], [r"^(ok|warning|error) +(?!clock)(\S+) +(\S.*)$", r"fix: (.*)$"]),
     "accept": (["--config", "ALONE", "--for", "4", "--force", "--out", "PAGE"], [r"^(made-up) +(\w+) ", r"^  - (its readings are synthetic.*)$"]),
     "sensors list": ([], [r'^    driver = "(\w+)"']),
@@ -145,7 +147,21 @@ class Json(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as listener, open(alone, "w", encoding="utf-8") as out:
             out.write(f'[stream]\nlisten = "127.0.0.1:{listener.getsockname()[1]}"\n'
                       '[[sensor]]\nname = "made-up"\ndriver = "synthetic"\n')
-        cls.places = {"ALONE": alone, "WIND": os.path.join(cls.folder, "wind.windlog"), "PAGE": os.path.join(cls.folder, "page.html"), "ADDRESS": cls.address, "CONFIG": cls.config,
+        fleet = os.path.join(cls.folder, "fleet.toml")
+        port = free_port()
+        server = Program("nats-server", "-a", "127.0.0.1", "-p", port)
+        cls.addClassCleanup(server.__exit__)
+        server.wait_for("Server is ready")
+        with open(fleet, "w", encoding="utf-8") as out:
+            out.write(f'[wind]\nlead = "nats://127.0.0.1:{port}"\nnode = "roof"\n[animation]\nrate = 10\n'
+                      '[[scene]]\nkind = "grass"\nblades_across = 8\nblades_deep = 8\n')
+        leader = Program(YURAGI, "run", "--config", fleet, "--listen", "127.0.0.1:0")
+        cls.addClassCleanup(leader.__exit__)
+        leader.address()
+        given_up_s = time.monotonic() + HANG_S
+        while "roof" not in run("fleet", "--config", fleet).stdout:  # its first word of itself
+            assert time.monotonic() < given_up_s
+        cls.places = {"FLEET": fleet, "ALONE": alone, "WIND": os.path.join(cls.folder, "wind.windlog"), "PAGE": os.path.join(cls.folder, "page.html"), "ADDRESS": cls.address, "CONFIG": cls.config,
                       "MODBUS": slave.wait_for(r"(127\.0\.0\.1:\d+)").group(1)}
         cls.program = program_help.Help(program_help.Program(YURAGI))
         cls.commands = {words_of(command): command for command in leaves(cls.program)}

@@ -4,8 +4,8 @@
 
 #include "daemon/follow/questions.hpp"
 
-// Hostile questions of followers, and replies of whoever writes to a follower's inbox. What is accepted is the same
-// after it was written and read again.
+// Hostile questions and reports of followers, and replies of whoever writes to a follower's inbox. What is accepted is
+// the same after it was written and read again.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace yuragi::daemon::follow;
@@ -17,6 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto reply = decode_reply(bytes)) {
     const Bytes written = std::visit([](const auto& held) { return encode(held); }, *reply);
     if (!decode_reply(written)) std::abort();
+  }
+  if (const auto report = decode_node_report(bytes)) {
+    if (!decode_node_report(encode(*report))) std::abort();
   }
   return 0;
 }
