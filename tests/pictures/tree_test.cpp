@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/looks/stage.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -25,7 +28,7 @@ using Pixels = std::vector<std::uint8_t>;
 /// a clear sky.
 class TreeFilm {
  public:
-  TreeFilm(std::string_view species, double speed_m_s, double crown_m, double distance_m)
+  TreeFilm(std::string_view species, double speed_m_s, double crown_m, double distance_m, double pitch_deg = -30.0)
       : context_({.is_software = true, .has_messages = true}),
         target_(kWidth_px, kHeight_px, 4),
         scenes_(species, speed_m_s) {
@@ -36,7 +39,7 @@ class TreeFilm {
     scenes_.advance(8.0);
     stage_.set_scenes(scenes_.models());
     camera_.frame(
-        {.target_m = {0.0, crown_m, 0.0}, .heading_deg = 330.0, .pitch_deg = -30.0, .distance_m = distance_m});
+        {.target_m = {0.0, crown_m, 0.0}, .heading_deg = 330.0, .pitch_deg = pitch_deg, .distance_m = distance_m});
   }
 
   Pixels next(double step_s) {
@@ -132,6 +135,31 @@ TEST(TreePicture, TheSkyShowsThroughTheCrown) {
     EXPECT_GE(share, 0.08);
     EXPECT_LE(share, 0.35);
   }
+}
+
+// From its fork to its first twigs a limb is steep below and leans more above: between, the vase is narrower than if
+// its limbs were straight.
+TEST(TreePicture, AZelkovasLimbsCurveOutward) {
+  TreeFilm film("zelkova", 0.5, 4.0, 9.0, -19.0);
+  const Pixels rgb = film.next(0.1);
+  const char* const folder = std::getenv("YURAGI_TREE_FOLDER");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  if (folder != nullptr)
+    picture::write_picture(std::filesystem::path(folder) / "limbs.png", kWidth_px, kHeight_px, rgb);
+  const auto width_px = [&](int row) {
+    int left = kWidth_px, right = -1;
+    for (int column = 0; column < kWidth_px; ++column) {
+      if (is_sky(rgb, column, row)) continue;
+      left = std::min(left, column);
+      right = std::max(right, column);
+    }
+    return right - left + 1;
+  };
+  constexpr int kTwigsBegin = 115, kFork = 167;  // rows
+  const double straight_px = 0.5 * (width_px(kTwigsBegin) + width_px(kFork));
+  const double share = width_px((kTwigsBegin + kFork) / 2) / straight_px;
+  std::printf("halfway from fork to twigs: %.2f of the width of straight limbs\n", share);
+  EXPECT_LE(share, 0.78);  // 0.90 of a fan of straight limbs
+  EXPECT_GE(share, 0.45) << "the limbs are one stem";
 }
 
 TEST(TreePicture, AStormMovesAZelkovasLeavesToTheLee) {

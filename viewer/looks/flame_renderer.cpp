@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "viewer/gl/noise_texture.hpp"
@@ -21,6 +22,8 @@ constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
 // Brightness of a flame as thick as its radius, in Light's unit: a wood fire is about as bright as a third of white
 // paper in the sun.
 constexpr float kBodyBrightness = 0.30F;
+// Factor by day: otherwise sunlit grass outshines it.
+constexpr float kDayBrightness = 3.2F;
 constexpr float kSheetBrightness = 2.2F;
 constexpr float kEmbersBrightness = 1.0F;
 constexpr glm::vec3 kGlow{0.050F, 0.017F, 0.004F};
@@ -35,6 +38,11 @@ constexpr double kFollowing_s = 0.65;
 constexpr double kJump_s = 1.0;
 
 constexpr int kStepsLow = 16, kStepsMedium = 20, kStepsHigh = 28;
+
+/// 0 by night, 1 by day.
+float day_of(float flame_brightness) {
+  return glm::smoothstep(0.4F, 1.8F, flame_brightness);
+}
 
 int steps_of(look::Quality quality) {
   if (quality == look::Quality::kLow) return kStepsLow;
@@ -122,6 +130,7 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
   glUniform1f(glGetUniformLocation(fire_program_.name(), "reach"), meshes::FlameVolume::kReach);
   risen_place_ = glGetUniformLocation(fire_program_.name(), "risen");
   fire_brightness_place_ = glGetUniformLocation(fire_program_.name(), "brightness");
+  fire_by_day_place_ = glGetUniformLocation(fire_program_.name(), "by_day");
   spark_brightness_place_ = glGetUniformLocation(spark_program_.name(), "brightness");
   glUseProgram(sheet_program_.name());
   glUniform1i(glGetUniformLocation(sheet_program_.name(), "columns"), static_cast<GLint>(surface.columns));
@@ -304,7 +313,10 @@ void FlameRenderer::draw_embers() {
 void FlameRenderer::draw_body() {
   glUseProgram(fire_program_.name());
   glUniform1f(risen_place_, static_cast<float>(gas_->risen()));
-  glUniform1f(fire_brightness_place_, kBodyBrightness * moment_.flame_brightness);
+  const float by_day = day_of(moment_.flame_brightness);
+  glUniform1f(fire_by_day_place_, by_day);
+  glUniform1f(fire_brightness_place_,
+              kBodyBrightness * moment_.flame_brightness * glm::mix(1.0F, kDayBrightness, by_day));
   glActiveTexture(GL_TEXTURE0 + gl::kFlameRowsUnit);
   glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
   glActiveTexture(GL_TEXTURE0);

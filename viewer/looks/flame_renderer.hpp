@@ -66,7 +66,7 @@ class FlameRenderer : public SceneRenderer {
   gl::Texture gas_tile_, layer_rows_;
   gl::Buffer hull_buffer_, hull_indices_, spark_buffer_;
   gl::VertexArray hull_array_, spark_array_;
-  GLint risen_place_ = -1, fire_brightness_place_ = -1, spark_brightness_place_ = -1;
+  GLint risen_place_ = -1, fire_brightness_place_ = -1, fire_by_day_place_ = -1, spark_brightness_place_ = -1;
 
   // A sheet.
   std::optional<pose::PointPositions> points_;

@@ -86,6 +86,7 @@ void describe_parts(std::size_t first) {
   glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(Part), offset_of(begin + offsetof(Part, facing)));
   glVertexAttribIPointer(3, 1, GL_UNSIGNED_INT, sizeof(Part), offset_of(begin + offsetof(Part, strand)));
   glVertexAttribIPointer(4, 1, GL_INT, sizeof(Part), offset_of(begin + offsetof(Part, root_at)));
+  glVertexAttribPointer(5, 3, GL_FLOAT, GL_FALSE, sizeof(Part), offset_of(begin + offsetof(Part, rest)));
 }
 
 /// The same of sprays.
@@ -210,9 +211,10 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
     }
     Wood& wood = *woods_.emplace_back(std::make_unique<Wood>());
     wood.level = i;
+    wood.bare = meshes::trees::bare_share(tree, i);
     glBindVertexArray(wood.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, wood.part_buffer.name());
-    enable_instances(5);
+    enable_instances(6);
     for (std::size_t tube = 0; tube < wood.tubes.size(); ++tube) {
       fill(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(tube),
            tube_triangles(tree.levels[i].strands.links_per_strand, meshes::trees::Branches::kSides.at(tube)));
@@ -497,6 +499,7 @@ void TreeRenderer::draw_branches(const gl::Program& program, const Wood& wood, c
   set_vec3(program, "crown_radius_m", place.scale * (crown_bounds_.high_m - crown_bounds_.low_m) / 2.0F + 0.01F);
   set_int(program, "first", meshes::trees::first_joint_at(*tree_, wood.level));
   set_int(program, "links", tree_->levels[wood.level].strands.links_per_strand);
+  glUniform1f(glGetUniformLocation(program.name(), "bare"), wood.bare);
   glBindVertexArray(wood.array.name());
   gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, branches.parts());
   for (const meshes::trees::BranchGroup& group : branches.groups()) {

@@ -45,6 +45,7 @@ class TreeRenderer : public SceneRenderer {
   /// A level of wood.
   struct Wood {
     std::size_t level = 0;
+    float bare = 1.0F;  // meshes::trees::bare_share()
     gl::Buffer part_buffer = {};
     std::array<gl::Buffer, meshes::trees::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
     gl::VertexArray array = {};

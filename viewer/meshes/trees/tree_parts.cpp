@@ -17,7 +17,14 @@ const glm::vec3 kBark(0.080F, 0.068F, 0.056F);
 const glm::vec3 kTwig(0.085F, 0.065F, 0.048F);
 
 constexpr double kLeafTilt_rad = 0.75;  // about the largest angle between a leaf's upper side and the sky
-constexpr float kOutward = 0.8F;        // how much it is turned out of the crown, toward the light, against that
+// A zelkova's limbs first rise steeply, and then curve outward: each is drawn that far inward of its joints, and to one
+// side, relative to its length without twigs. Inward: for each metre that its foot leans out on a metre of height; from
+// 0.148 on it would lean inward. Bows differ, so that no two limbs are alike.
+constexpr float kInward = 0.115F;
+constexpr float kInwardVaries = 0.025F;
+constexpr float kAsideVaries = 0.030F;
+
+constexpr float kOutward = 0.8F;  // how much it is turned out of the crown, toward the light, against that
 
 struct LeafTints {
   glm::vec3 deep;
@@ -59,6 +66,20 @@ glm::vec3 rest_direction(const pose::StrandSkeleton& strands, std::size_t i) {
   return length > 1e-3F ? sum / length : link_at_rest(strands, i, 0);
 }
 
+/// How far a limb is drawn aside of its joints, metres.
+glm::vec3 bow_m(const pose::StrandSkeleton& strands, std::size_t i, float bare, double chance, double other_chance) {
+  const glm::vec3 foot = link_at_rest(strands, i, 0);
+  const glm::vec3 level(foot.x, 0.0F, foot.z);
+  const float lean = glm::length(level) / std::max(foot.y, 0.3F);
+  if (lean < 1e-3F) return glm::vec3(0.0F);
+  const glm::vec3 outward = glm::normalize(level);
+  const glm::vec3 aside(-outward.z, 0.0F, outward.x);
+  const float bare_m = bare * strands.link_length_m[i] * static_cast<float>(strands.links_per_strand);
+  const auto varied = [](float most, double uniform) { return most * (2.0F * static_cast<float>(uniform) - 1.0F); };
+  return bare_m *
+         ((varied(kInwardVaries, chance) - kInward) * lean * outward + varied(kAsideVaries, other_chance) * aside);
+}
+
 /// The middle of the strands' roots.
 glm::vec3 middle_of(const pose::StrandSkeleton& strands) {
   glm::vec3 sum(0.0F);
@@ -83,6 +104,16 @@ std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level) {
   return first;
 }
 
+float bare_share(const pose::TreeSkeleton& tree, std::size_t level) {
+  const auto links = static_cast<float>(tree.levels[level].strands.links_per_strand);
+  float bare = 1.0F;
+  for (const pose::TreeLevel& grown : tree.levels) {
+    if (grown.strands.strand_count == 0 || &grown == tree.levels.data() || grown.parent_level != level) continue;
+    for (const auto link : grown.parent_link) bare = std::min(bare, static_cast<float>(link) / links);
+  }
+  return bare;
+}
+
 glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, std::size_t link) {
   const glm::vec3 rest(strands.rest_x[strand], strands.rest_y[strand], strands.rest_z[strand]);
   const glm::vec3 curl(strands.curl_x[strand], strands.curl_y[strand], strands.curl_z[strand]);
@@ -102,6 +133,8 @@ std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, 
   const pose::StrandSkeleton& strands = from.strands;
   std::vector<Part> parts(strands.strand_count);
   const glm::vec3 middle_m = middle_of(strands);
+  const bool is_vase = level == 1 && !from.is_leaves && leaf_species(tree) == LeafSpecies::kZelkova;
+  const float bare = is_vase ? bare_share(tree, level) : 0.0F;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto [first, second] = chance.uniform_pair(2 * i);
     const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
@@ -136,6 +169,7 @@ std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, 
       // The direction of the tube's seam: any that is not along the branch.
       const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
       part.facing = array_of(std::abs(rest.y) > 0.7F ? glm::vec3(1.0F, 0.0F, 0.0F) : glm::vec3(0.0F, 1.0F, 0.0F));
+      if (is_vase) part.rest = array_of(bow_m(strands, i, bare, third, fourth));
       part.tint = array_of(light * (level == 0 ? kBark : kTwig));
     }
   }

@@ -19,7 +19,8 @@ struct Part {
   std::array<float, 3> tint{};    ///< linear light
   float tip_radius_m = 0.0F;      ///< of a leaf: its strand's length
   std::array<float, 3> facing{};  ///< of a leaf: the normal of its upper side; of a branch: a direction across it
-  std::array<float, 3> rest{};    ///< of a leaf: unit vector from foot to tip at rest
+  std::array<float, 3>
+      rest{};  ///< of a leaf: unit vector from foot to tip at rest; of a branch: how far it is drawn aside, metres
   std::uint32_t strand = 0;
   std::int32_t root_at = -1;  ///< index of the x of the joint that it grows from; negative: it stands on the ground
 };
@@ -31,6 +32,9 @@ std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level);
 /// makes the same parts.
 std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level);
 std::vector<Part> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage);
+
+/// The part of the length of a level's branches, from their feet, on which nothing grows: 0 to 1.
+float bare_share(const pose::TreeSkeleton& tree, std::size_t level);
 
 /// The direction of a link of a strand at rest.
 glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, std::size_t link);

@@ -1,5 +1,6 @@
 #include "viewer/meshes/trees/tree_parts.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -79,6 +80,20 @@ TEST_F(TreePartsTest, LeavesLeadWhereTheyDoAtRestAndFaceTheSkyOrOutOfTheCrown) {
     EXPECT_NEAR(std::hypot(leaf.facing[0], leaf.facing[1], leaf.facing[2]), 1.0F, 1e-5F);
   }
   EXPECT_GT(outward / static_cast<float>(leaves.size()), 0.1F);  // metres out of the middle, on average
+}
+
+TEST_F(TreePartsTest, NothingGrowsOnTheBarePartOfABranch) {
+  for (std::size_t level = 0; level + 1 < tree_.levels.size(); ++level) {
+    const float bare = bare_share(tree_, level);
+    const auto links = static_cast<float>(tree_.levels[level].strands.links_per_strand);
+    float first = 1.0F;
+    for (const pose::TreeLevel& grown : tree_.levels) {
+      if (&grown == tree_.levels.data() || grown.parent_level != level) continue;
+      for (const auto link : grown.parent_link) first = std::min(first, static_cast<float>(link) / links);
+    }
+    EXPECT_FLOAT_EQ(bare, first);
+  }
+  EXPECT_EQ(bare_share(tree_, tree_.levels.size() - 1), 1.0F) << "nothing grows on leaves";
 }
 
 TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {

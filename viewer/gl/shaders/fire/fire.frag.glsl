@@ -10,6 +10,7 @@ uniform vec2 size_m;           // its radius and its height at rest
 uniform float risen;           // how far the gas has, in heights
 uniform vec2 floor_m;          // no gas burns below the first height, nothing keeps it from burning above the second
 uniform float brightness;
+uniform float by_day;          // 0 by night to 1: bright ground behind the fire shines through it less
 
 in vec3 place_m;
 in vec3 inside;
@@ -53,18 +54,19 @@ void main() {
     if (gas.r > 0.05) {
       // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.075 * across.x + 0.012 * across.y, 0.0077 * (v - risen)), 0.5).r;
-      float two = textureLod(noise_tile, vec2(0.085 * across.y - 0.012 * across.x, 0.0098 * (v - risen) + 0.01 * one), 0.5).r;
+      float one = textureLod(noise_tile, vec2(0.17 * across.x + 0.03 * across.y, 0.0077 * (v - risen)), 0.5).r;
+      float two = textureLod(noise_tile, vec2(0.19 * across.y - 0.03 * across.x, 0.0098 * (v - risen) + 0.01 * one), 0.5).r;
       float torn = one + two - 1.0;
       float high = min(v * 1.6, 1.0);
-      float level = 1.5 * (gas.r - 0.22) + torn * (0.22 + 0.95 * high);
+      float level = 1.5 * (gas.r - 0.22) + torn * (0.60 + 0.75 * high);
       level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
       float thick = smoothstep(0.0, 0.45, level) * (1.0 - 0.2 * smoothstep(0.40, 1.0, level));
       vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * min(v, 1.0), 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
       // What flies off is thinner and darker: it passes a place more often than three times in a second.
       thick *= mix(1.0, 0.22, smoothstep(0.12, 0.60, v));
-      sum += hot.rgb * hot.rgb * (thick * step_m);
+      // Tongues: bright where both noises are high.
+      sum += hot.rgb * hot.rgb * (thick * step_m * (0.15 + 14.0 * one * one * two * two));
       // The blue of the root, where air still reaches the gas.
       sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
     }
@@ -73,15 +75,15 @@ void main() {
     v += up * step_m;
     y_m += ray.y * step_m;
   }
-  // Never a saturated red (R / (R + G + B) of 0.8), whose flicker is the most harmful: orange at most.
-  vec3 value = finish(sum * (brightness / size_m.x));
-  value.g = max(value.g, 0.555 * value.r);
-  // As yellow as what glows, also where the eye would see it without color in the dark.
-  value.b = min(value.b, value.g * value.g * value.g / max(value.r * value.r, 1e-4));
+  // Hot gas is yellow, and the tips are dark orange, although the eye sees other dim light without color. Never a saturated
+  // red (R / (R + G + B) of 0.8), whose flicker is the most harmful: orange at most.
+  vec3 light = finish(sum * (brightness / size_m.x));
+  float glow = max(light.r, max(light.g, light.b));
+  vec3 value = glow * vec3(1.0, mix(0.555, 0.84, smoothstep(0.50, 1.0, glow)), mix(0.06, 0.30, smoothstep(0.75, 1.0, glow)));
   // Glowing soot hides what is behind it, so that the fire keeps its color before a bright sky. Where it no longer glows it is
   // smoke, lit by sky and sun.
-  float glow = max(value.r, max(value.g, value.b));
+  float hides = 1.0 - pow(1.0 - 0.92 * glow, 1.0 + 0.7 * by_day);
   float smoke = 0.5 * (1.0 - exp(-1.1 * soot / size_m.x)) * (1.0 - glow);
   value += finish(0.16 * (sky_light.rgb + 0.3 * sun_light.rgb)) * smoke;
-  color = vec4(value, max(0.92 * glow, smoke));
+  color = vec4(value, max(hides, smoke));
 }

@@ -2,6 +2,7 @@
 uniform int first;  // index of the level's first joint
 uniform int rings;
 uniform int sides;
+uniform float bare;  // the part of its length, from the foot, on which nothing grows
 // TreePlace (viewer/meshes/trees/tree_place.hpp).
 uniform vec3 place_from_m;
 uniform vec4 place_to_m;  // w: scale
@@ -12,6 +13,8 @@ layout(location = 1) in vec4 tint_tip;   // w: radius at the tip, metres
 layout(location = 2) in vec3 aside;
 layout(location = 3) in uint strand;
 layout(location = 4) in int root_at;     // of the parent's joint; below 0: it stands on the ground
+
+layout(location = 5) in vec3 bow;        // how far it is drawn aside of its joints at most, metres
 
 out vec3 place_m;
 out vec3 normal;
@@ -25,6 +28,13 @@ out float own_open;
 
 vec3 turned(vec3 v) { return vec3(place_turn.x * v.x - place_turn.y * v.z, v.y, place_turn.y * v.x + place_turn.x * v.z); }
 
+// The middle of the branch after so many links: its joint there, aside by a part of its bow, which is 0 at the foot and
+// from the first twig on.
+vec3 middle_at(int link, vec3 root) {
+  float along = min(float(link) / (float(links) * max(bare, 1e-3)), 1.0);
+  return (link > 0 ? joint(first, strand, link - 1) : root) + 6.75 * along * (1.0 - along) * (1.0 - along) * bow;
+}
+
 void main() {
   int ring = gl_VertexID / (sides + 1);
   float turn = 6.2831853 * float(gl_VertexID % (sides + 1)) / float(sides);
@@ -32,9 +42,8 @@ void main() {
   int link_below = max(ring - 1, 0) * links / rings;
   int link_above = min(ring + 1, rings) * links / rings;
   vec3 root = root_at < 0 ? root_base.xyz : joint_at(root_at);
-  vec3 middle = link > 0 ? joint(first, strand, link - 1) : root;
-  vec3 below = link_below > 0 ? joint(first, strand, link_below - 1) : root;
-  vec3 along = normalize(joint(first, strand, max(link_above, 1) - 1) - below);
+  vec3 middle = middle_at(link, root);
+  vec3 along = normalize(middle_at(max(link_above, 1), root) - middle_at(link_below, root));
   vec3 across = normalize(cross(along, aside));
   normal = cos(turn) * across + sin(turn) * cross(along, across);
 
