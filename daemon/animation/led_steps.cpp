@@ -44,6 +44,7 @@ bool LedSteps::use_own_wind() {
 }
 
 bool LedSteps::order(std::unique_ptr<StateOrder>& order) {
+  if (is_ordered_) take_finished();
   if (is_ordered_ || !queue_.push({.due = {}, .is_tick = false, .is_own = false, .order = order.get(), .tick = {}}))
     return false;
   static_cast<void>(order.release());  // the queue owns it

@@ -49,7 +49,7 @@ class LedSteps {
   /// From this place in the queue on the daemon's own wind is used, until the next tick. False if the queue is full.
   bool use_own_wind();
   /// Has the state saved or loaded at this place in the queue. False, and `order` stays, while another one is carried
-  /// out or the queue is full.
+  /// out or the queue is full. One that is over and was not taken is dropped.
   bool order(std::unique_ptr<StateOrder>& order);
   /// The order that was carried out, once.
   std::unique_ptr<StateOrder> take_finished() noexcept;

@@ -14,10 +14,18 @@
 namespace yuragi::daemon::follow {
 namespace {
 
-/// A server without a tick for this long hangs: the stream itself is the sign of life. Longer each time in vain.
+/// A server without a tick for this long hangs, or without so many if these take longer: the stream itself is the sign
+/// of life. Longer each time in vain.
 constexpr Nanoseconds kHangsAfter = std::chrono::milliseconds(500), kHangsLongest = std::chrono::seconds(8);
-/// A stand-by leads when no leader is heard for this long.
-constexpr auto kStandsInAfter = std::chrono::seconds(3);
+constexpr int kHangsTicks = 4;
+/// A stand-by leads when no leader is heard for this long, or for so many ticks.
+constexpr Nanoseconds kStandsInAfter = std::chrono::seconds(3);
+constexpr int kStandsInTicks = 12;
+
+Nanoseconds at_least(Nanoseconds time, int ticks, double rate_hz) {
+  return std::max(time, from_seconds(ticks / rate_hz));
+}
+
 /// Two leaders on one channel take over from each other at most this often.
 constexpr auto kTakesOverEvery = std::chrono::seconds(10);
 /// Its own animation had to do without a tick: the others have another picture.
@@ -65,7 +73,9 @@ Company::Company(const settings::Config& config, std::size_t state_bytes, animat
       began_(now.mono),
       left_server_(now.mono),
       new_epoch_(now.mono),
-      leave_after_(kHangsAfter),
+      hangs_after_(at_least(kHangsAfter, kHangsTicks, config.animation.rate_hz)),
+      stands_in_after_(at_least(kStandsInAfter, kStandsInTicks, config.animation.rate_hz)),
+      leave_after_(hangs_after_),
       link_(link_settings(config_, makeup_.software),
             config_.lead.empty() ? std::vector{ticks_subject_}
                                  : std::vector{ticks_subject_, questions_subject_, reports_subject_},
@@ -85,7 +95,7 @@ void Company::take(MonoTime now) {
   for (const NatsMessage& message : link_.received()) {
     if (message.subject == ticks_subject_) {
       heard_ = now;
-      leave_after_ = kHangsAfter;
+      leave_after_ = hangs_after_;
       if (!leads_) {
         follower_.take_tick(message.bytes, now);
       } else if (const auto tick = wire::lead::decode_wind_tick(message.bytes, now);
@@ -116,7 +126,8 @@ void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now,
   } else if (leads_ && !steps_.position().is_exact && steps_.position().epoch == leader_.epoch() &&
              now.mono - new_epoch_ > kNewEpochEvery) {
     lead(now);
-  } else if (!leads_ && stands_by && now.mono - std::max(began_, follower_.heard().value_or(began_)) > kStandsInAfter) {
+  } else if (!leads_ && stands_by &&
+             now.mono - std::max(began_, follower_.heard().value_or(began_)) > stands_in_after_) {
     spdlog::info("company: no leader is heard: this daemon leads");
     lead(now);
   }
@@ -132,7 +143,7 @@ void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now,
 void Company::leave_hanging_server(MonoTime now) {
   if (now - std::max(left_server_, heard_.value_or(began_)) < leave_after_) return;
   left_server_ = now;
-  leave_after_ = std::min(2 * leave_after_, kHangsLongest);
+  leave_after_ = std::max(hangs_after_, std::min(2 * leave_after_, kHangsLongest));
   link_.leave_server();
 }
 
@@ -208,6 +219,9 @@ Company::Status Company::status(MonoTime now) const {
     status.nodes = leader_.fleet().attention(node_, now);
   } else {
     const Follower::Counts& counts = follower_.counts();
+    const auto delay_s = follower_.leaders_delay_s();
+    if (delay_s && *delay_s != config_.delay_s)
+      status.part += fmt::format("; not in step: [wind] delay is {:g} s there, {:g} s here", *delay_s, config_.delay_s);
     status.part += fmt::format("; {} ticks, {} lost and had again, {} without a tick, {} states", counts.ticks,
                                counts.repaired, steps_.position().without_tick, counts.states);
   }

@@ -86,6 +86,7 @@ class Company {
   std::uint64_t others_epoch_ = 0;
   std::optional<MonoTime> heard_;  ///< any tick, also its own: the server works
   MonoTime began_, left_server_, new_epoch_;
+  const Nanoseconds hangs_after_, stands_in_after_;
   Nanoseconds leave_after_;
   NatsLink link_;  ///< last: its arrivals use the others
 };

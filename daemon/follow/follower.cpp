@@ -27,7 +27,8 @@ Follower::Follower(PictureMakeup makeup, Nanoseconds delay, animation::LedSteps&
       steps_(steps),
       ask_(std::move(ask)),
       listener_(std::move(listener)),
-      period_(from_seconds(1.0 / makeup_.rate_hz)) {}
+      period_(from_seconds(1.0 / makeup_.rate_hz)),
+      silent_after_(std::max<Nanoseconds>(kSilentAfter, kSilentTicks * period_)) {}
 
 void Follower::refuse(const std::string& why) {
   ++counts_.refused;
@@ -61,7 +62,7 @@ void Follower::take_tick(std::span<const std::uint8_t> bytes, MonoTime now) {
 /// Of a leader that has introduced itself. Another one is asked for that, and forgotten if it does not.
 bool Follower::is_of_the_present(const wire::lead::WindTick& tick, MonoTime now) {
   if (tick.epoch == play_out_.epoch()) {
-    if (other_ && now - other_->since > kSilentAfter) other_.reset();
+    if (other_ && now - other_->since > silent_after_) other_.reset();
     return is_in_wind_;
   }
   if (!other_ || tick.epoch > other_->epoch) other_ = {.epoch = tick.epoch, .since = now};
@@ -79,6 +80,7 @@ void Follower::take(const Introduction& introduction, MonoTime /*now*/) {
   other_.reset();
   leader_ = {};
   leaders_ = introduction.makeup;
+  leaders_delay_s_ = introduction.delay_s;
   differences_ = wind_differences(*leaders_, makeup_);
   is_in_wind_ = differences_.empty();
   if (is_in_wind_) differences_ = scene_differences(*leaders_, makeup_);
@@ -172,7 +174,7 @@ void Follower::ask_for_state(MonoTime now) {
 }
 
 void Follower::ask_who_leads(MonoTime now) {
-  const bool is_unknown = heard_unknown_ && now - *heard_unknown_ < kSilentAfter && !is_in_wind_;
+  const bool is_unknown = heard_unknown_ && now - *heard_unknown_ < silent_after_ && !is_in_wind_;
   if (!other_ && leaders_ && !is_unknown) return;
   if (!leader_.is_due(now)) return;
   leader_.ask(now, kAskLeaderFirst, kAskLeaderLongest);
@@ -187,7 +189,7 @@ void Follower::advance(MonoTime now) {
       listener_.loaded(finished->shown);
     }
   }
-  const bool is_silent = !heard_ || now - *heard_ > kSilentAfter;
+  const bool is_silent = !heard_ || now - *heard_ > silent_after_;
   if (heard_ || heard_unknown_) ask_who_leads(now);
   if (is_silent || !is_in_wind_) {
     if (!uses_own_wind_ && steps_.use_own_wind()) uses_own_wind_ = true;
@@ -207,6 +209,8 @@ void Follower::leave() {
   uses_own_wind_ = true;
   arriving_.reset();
   to_load_.reset();
+  is_loading_ = false;
+  leaders_delay_s_.reset();
   leader_ = ticks_ = state_ = {};
 }
 
@@ -220,7 +224,7 @@ void Follower::set_makeup(PictureMakeup makeup) {
 Follower::Phase Follower::phase(MonoTime now) const {
   if (leaders_ && !is_in_wind_) return Phase::kDiffers;
   if (!heard_) return Phase::kNoLeader;
-  if (now - *heard_ > kSilentAfter) return Phase::kSilent;
+  if (now - *heard_ > silent_after_) return Phase::kSilent;
   const animation::LedSteps::Position at = steps_.position();
   if (!leaders_ || !at.is_led || at.epoch != play_out_.epoch()) return Phase::kJoining;
   if (!differences_.empty()) return Phase::kSameWind;

@@ -25,8 +25,10 @@ namespace yuragi::daemon::follow {
 /// in is hostile until it is decoded.
 class Follower {
  public:
-  /// The leader is silent when it is not heard for this long: the last wind goes on until then, then the own one.
+  /// The leader is silent when it is not heard for this long, or for kSilentTicks if these take longer: the last wind
+  /// goes on until then, then the own one.
   static constexpr std::chrono::seconds kSilentAfter{2};
+  static constexpr int kSilentTicks = 8;
 
   /// Asks the leader. Never waits.
   using Ask = std::function<void(const Bytes& question)>;
@@ -68,6 +70,8 @@ class Follower {
   Phase phase(MonoTime now) const;
   /// Between this daemon and the leader, as texts.
   const std::vector<std::string>& differences() const noexcept { return differences_; }
+  /// The delay with which the leader plays; nullopt: not known.
+  std::optional<double> leaders_delay_s() const noexcept { return leaders_delay_s_; }
 
   struct Counts {
     std::uint64_t ticks = 0, known = 0, refused = 0;  ///< taken; taken before; not of a leader or damaged
@@ -104,10 +108,11 @@ class Follower {
   animation::LedSteps& steps_;
   Ask ask_;
   Listener listener_;
-  const Nanoseconds period_;
+  const Nanoseconds period_, silent_after_;
 
   std::optional<PictureMakeup> leaders_;  ///< of the epoch that is played, or that differs
-  bool is_in_wind_ = false;               ///< its ticks are played
+  std::optional<double> leaders_delay_s_;
+  bool is_in_wind_ = false;  ///< its ticks are played
   std::vector<std::string> differences_;
   /// A later epoch, whose leader has not introduced itself yet.
   struct Other {

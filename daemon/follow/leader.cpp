@@ -30,6 +30,8 @@ void Leader::begin_epoch(UtcTime now, std::uint64_t after, std::uint64_t number)
   const double by_clock = std::floor(std::max(0.0, seconds(since)) * rate_hz_);
   number_ = std::max({static_cast<std::uint64_t>(by_clock), number, number_}) + 1;
   kept_.clear();
+  waiting_.clear();
+  is_saving_ = false;
 }
 
 bool Leader::cue(const animation::SceneCue& cue) {

@@ -311,6 +311,17 @@ TEST_F(FollowerTest, ALeaderThatIsHaltedForLessThanTheDelayIsNotSeen) {
   EXPECT_EQ(same_share(), 1.0);
 }
 
+// A stand-by that loads a state when it begins to lead, and one that saves a state when it gives way.
+TEST_F(FollowerTest, AStateThatItsOwnerGaveUpIsInNobodysWay) {
+  run(20);
+  auto forgotten = std::make_unique<animation::StateOrder>();
+  ASSERT_TRUE(leaders_.steps.order(forgotten));
+  run(30);
+  run(120);
+  EXPECT_EQ(follower_.phase(now_), Follower::Phase::kSamePicture);
+  EXPECT_EQ(same_share(), 1.0);
+}
+
 TEST_F(FollowerTest, ItsQuestionsAreFewWhileNobodyAnswers) {
   run(120);
   is_leading_ = false;
