@@ -114,20 +114,9 @@ void Company::take(MonoTime now) {
 }
 
 void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now, std::uint32_t periods) {
-  const bool stands_by = !config_.lead.empty() && !config_.follow.empty();
-  if (leads_ && others_epoch_ > leader_.epoch()) {
-    if (stands_by) {
-      spdlog::info("company: another daemon leads again");
-      leads_ = false;
-      began_ = now.mono;
-    } else if (now.mono - new_epoch_ > kTakesOverEvery) {
-      lead(now);
-    }
-  } else if (leads_ && !steps_.position().is_exact && steps_.position().epoch == leader_.epoch() &&
-             now.mono - new_epoch_ > kNewEpochEvery) {
-    lead(now);
-  } else if (!leads_ && stands_by &&
-             now.mono - std::max(began_, follower_.heard().value_or(began_)) > stands_in_after_) {
+  if (leads_) {
+    keep_leading(now);
+  } else if (stands_by() && now.mono - std::max(began_, follower_.heard().value_or(began_)) > stands_in_after_) {
     spdlog::info("company: no leader is heard: this daemon leads");
     lead(now);
   }
@@ -138,6 +127,24 @@ void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now,
     follower_.advance(now.mono);
   }
   leave_hanging_server(now.mono);
+}
+
+/// Gives way to a leader with a later epoch, or takes over from it; and begins anew after its own animation had to do
+/// without a tick.
+void Company::keep_leading(const Instant& now) {
+  const Nanoseconds since_epoch = now.mono - new_epoch_;
+  if (others_epoch_ > leader_.epoch()) {
+    if (stands_by()) {
+      spdlog::info("company: another daemon leads again");
+      leads_ = false;
+      began_ = now.mono;
+    } else if (since_epoch > kTakesOverEvery) {
+      lead(now);
+    }
+    return;
+  }
+  const animation::LedSteps::Position at = steps_.position();
+  if (at.epoch == leader_.epoch() && !at.is_exact && since_epoch > kNewEpochEvery) lead(now);
 }
 
 void Company::leave_hanging_server(MonoTime now) {

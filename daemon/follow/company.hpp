@@ -69,7 +69,9 @@ class Company {
   Status status(MonoTime now) const;
 
  private:
+  bool stands_by() const noexcept { return !config_.lead.empty() && !config_.follow.empty(); }
   void lead(const Instant& now);
+  void keep_leading(const Instant& now);
   void leave_hanging_server(MonoTime now);
   std::string trouble(MonoTime now) const;
   std::string part(MonoTime now) const;

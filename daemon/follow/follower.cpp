@@ -41,7 +41,11 @@ void Follower::take_tick(std::span<const std::uint8_t> bytes, MonoTime now) {
     heard_unknown_ = now;
     return refuse("a tick " + tick.error().message);
   }
-  if (tick->epoch < play_out_.epoch()) return refuse("a tick is of an epoch that is over");
+  if (tick->epoch < play_out_.epoch()) {
+    if (!is_silent(now)) return refuse("a tick is of an epoch that is over");
+    other_ = {.epoch = tick->epoch, .since = now};
+    return;
+  }
   heard_ = now;
   if (!is_of_the_present(*tick, now)) return;
   switch (play_out_.take(*tick, now)) {
@@ -75,8 +79,10 @@ void Follower::take_reply(std::span<const std::uint8_t> bytes, MonoTime now) {
   std::visit([this, now](const auto& held) { take(held, now); }, *reply);
 }
 
-void Follower::take(const Introduction& introduction, MonoTime /*now*/) {
-  if (introduction.epoch < latest_epoch()) return refuse("a leader is of an epoch that is over");
+void Follower::take(const Introduction& introduction, MonoTime now) {
+  const bool is_awaited = other_ && other_->epoch == introduction.epoch;
+  if (introduction.epoch < latest_epoch() && !(is_awaited && is_silent(now)))
+    return refuse("a leader is of an epoch that is over");
   other_.reset();
   leader_ = {};
   leaders_ = introduction.makeup;
@@ -189,9 +195,8 @@ void Follower::advance(MonoTime now) {
       listener_.loaded(finished->shown);
     }
   }
-  const bool is_silent = !heard_ || now - *heard_ > silent_after_;
-  if (heard_ || heard_unknown_) ask_who_leads(now);
-  if (is_silent || !is_in_wind_) {
+  if (heard_ || heard_unknown_ || other_) ask_who_leads(now);
+  if (is_silent(now) || !is_in_wind_) {
     if (!uses_own_wind_ && steps_.use_own_wind()) uses_own_wind_ = true;
     return;
   }
@@ -224,7 +229,7 @@ void Follower::set_makeup(PictureMakeup makeup) {
 Follower::Phase Follower::phase(MonoTime now) const {
   if (leaders_ && !is_in_wind_) return Phase::kDiffers;
   if (!heard_) return Phase::kNoLeader;
-  if (now - *heard_ > silent_after_) return Phase::kSilent;
+  if (is_silent(now)) return Phase::kSilent;
   const animation::LedSteps::Position at = steps_.position();
   if (!leaders_ || !at.is_led || at.epoch != play_out_.epoch()) return Phase::kJoining;
   if (!differences_.empty()) return Phase::kSameWind;

@@ -21,8 +21,9 @@ namespace yuragi::daemon::follow {
 /// follow from, asks for ticks that were lost on the way, and for the state of the leader's scenes until its own poses
 /// are the same. Belongs to the I/O thread; time is a parameter, and nothing waits.
 ///
-/// Ticks of another leader or epoch count only once that leader has introduced itself; older ones never. All that comes
-/// in is hostile until it is decoded.
+/// Ticks of another leader or epoch count only once that leader has introduced itself. Those of an older epoch do not
+/// count while the present leader is heard: they may be a replay. Afterwards they may be of a leader that was started
+/// again with a wrong clock. All that comes in is hostile until it is decoded.
 class Follower {
  public:
   /// The leader is silent when it is not heard for this long, or for kSilentTicks if these take longer: the last wind
@@ -90,6 +91,7 @@ class Follower {
     void ask(MonoTime now, Nanoseconds first, Nanoseconds longest);
   };
 
+  bool is_silent(MonoTime now) const noexcept { return !heard_ || now - *heard_ > silent_after_; }
   bool is_of_the_present(const wire::lead::WindTick& tick, MonoTime now);
   void ask_who_leads(MonoTime now);
   void take(const Introduction& introduction, MonoTime now);
@@ -114,7 +116,7 @@ class Follower {
   std::optional<double> leaders_delay_s_;
   bool is_in_wind_ = false;  ///< its ticks are played
   std::vector<std::string> differences_;
-  /// A later epoch, whose leader has not introduced itself yet.
+  /// Another epoch, whose leader has not introduced itself yet.
   struct Other {
     std::uint64_t epoch = 0;
     MonoTime since{};

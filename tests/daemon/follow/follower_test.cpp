@@ -238,6 +238,19 @@ TEST_F(FollowerTest, AnotherEpochIsJoinedAndAnOlderOneNeverCountsAgain) {
   EXPECT_EQ(same_share(), 1.0);
 }
 
+// After a loss of power, say.
+TEST_F(FollowerTest, ALeaderThatIsStartedAgainWithAWrongClockIsFollowed) {
+  run(120);
+  const std::uint64_t first_epoch = leader_.epoch();
+  leader_.begin_epoch(UtcTime(std::chrono::hours(1)), 0, 0);
+  ASSERT_LT(leader_.epoch(), first_epoch);
+  run(60);
+  EXPECT_GT(follower_.counts().refused, 30U) << "it may be a replay, as long as the leader of before may come back";
+  run(240);
+  EXPECT_EQ(follower_.phase(now_), Follower::Phase::kSamePicture);
+  EXPECT_EQ(same_share(), 1.0);
+}
+
 // Its sender does not answer: it is not the leader.
 TEST_F(FollowerTest, ATickOfALaterEpochThatNobodyStandsForChangesNothing) {
   run(120);
