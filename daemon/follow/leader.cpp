@@ -43,6 +43,7 @@ bool Leader::cue(const animation::SceneCue& cue) {
 
 void Leader::make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods) {
   number_ += periods;
+  reply_bytes_left_ = std::min(kMaxReplies_bytes_s, reply_bytes_left_ + kMaxReplies_bytes_s * periods / rate_hz_);
   wire::lead::WindTick tick{
       .epoch = epoch_, .number = number_, .periods = periods, .utc = at.utc, .wind = wind, .cue_count = cues_.size()};
   std::ranges::copy(cues_, tick.cues.begin());
@@ -58,12 +59,13 @@ void Leader::make_tick(const wind::ground::DrivingWind& wind, const Instant& at,
 void Leader::answer(std::span<const std::uint8_t> bytes, const std::string& reply_to, MonoTime now) {
   ++counts_.questions;
   const auto question = decode_question(bytes);
-  if (!question || !reply_to.starts_with(kInbox)) {
+  const bool is_too_much = question && question->about != Question::About::kState && reply_bytes_left_ <= 0.0;
+  if (!question || !reply_to.starts_with(kInbox) || is_too_much) {
     ++counts_.refused;
     return;
   }
   if (question->about == Question::About::kLeader) {
-    return send_(reply_to, encode(Introduction{.epoch = epoch_, .delay_s = seconds(delay_), .makeup = makeup_}));
+    return reply(reply_to, encode(Introduction{.epoch = epoch_, .delay_s = seconds(delay_), .makeup = makeup_}));
   }
   if (question->epoch != epoch_) return;  // it hears the new one, and asks again
   if (question->about == Question::About::kTicks) return send_ticks(*question, reply_to);
@@ -84,7 +86,12 @@ void Leader::send_ticks(const Question& question, const std::string& reply_to) {
   }
   if (ticks.ticks.empty()) return;
   counts_.repaired_ticks += ticks.ticks.size();
-  send_(reply_to, encode(ticks));
+  reply(reply_to, encode(ticks));
+}
+
+void Leader::reply(const std::string& reply_to, const Bytes& bytes) {
+  reply_bytes_left_ -= static_cast<double>(bytes.size());
+  send_(reply_to, bytes);
 }
 
 void Leader::advance(MonoTime now) {

@@ -27,6 +27,9 @@ class Leader {
   static constexpr std::chrono::seconds kKept{60};
   /// The largest number of followers that wait for a state; further ones ask again.
   static constexpr std::size_t kMaxWaiting = 64;
+  /// The most that is sent as introductions and as ticks once more, so that no follower's questions fill the link.
+  /// Further questions are refused; followers ask again.
+  static constexpr double kMaxReplies_bytes_s = 8e6;
 
   /// `state_bytes`: the size of the animation's state. `subject`: of the ticks.
   Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, std::string subject,
@@ -58,6 +61,7 @@ class Leader {
   const Counts& counts() const noexcept { return counts_; }
 
  private:
+  void reply(const std::string& reply_to, const Bytes& bytes);
   void send_ticks(const Question& question, const std::string& reply_to);
   void send_state(const animation::StateOrder& saved);
 
@@ -72,6 +76,7 @@ class Leader {
   std::uint64_t epoch_ = 0, number_ = 0;
   std::vector<wire::lead::TickCue> cues_;
   std::deque<std::pair<std::uint64_t, Bytes>> kept_;  ///< by number
+  double reply_bytes_left_ = kMaxReplies_bytes_s;     ///< of a second's
   std::vector<std::string> waiting_;                  ///< for a state
   MonoTime saved_{};
   bool is_saving_ = false;
