@@ -79,7 +79,8 @@ class Client:
     """Whoever can reach the server. `login`: "user:password"."""
 
     def __init__(self, test, server, login=""):
-        self.news, self.messages, self.errors, self.pongs = threading.Condition(), [], [], 0
+        self.messages, self.errors, self.pongs = [], [], 0
+        self.news = threading.Condition()
         self.socket = socket.create_connection(("127.0.0.1", server.port), HANG_S)
         test.addCleanup(self.socket.close)
         user, _, password = login.partition(":")
