@@ -176,7 +176,7 @@ class FleetTest(unittest.TestCase):
     programs = ""
 
     def setUp(self):
-        self.daemons = []
+        self.daemons, self.servers = [], []
         self.folder = self.enterContext(tempfile.TemporaryDirectory(prefix="yuragi-fleet-"))
 
     def logs(self):
@@ -191,6 +191,7 @@ class FleetTest(unittest.TestCase):
             if daemon.stream.frames:
                 text += f"frames: {len(daemon.stream.frames)}, the last tick: {daemon.stream.frames[-1].tick}\n"
             texts.append(f"---- {daemon.name}\n{text}")
+        texts += [f"---- {server.name}\n{server.program.text()}" for server in self.servers]
         return "".join(texts)
 
     def wait_until_equal(self, leader, follower, since_s=0.0, ticks=RATE_HZ, what="poses as the leader's"):

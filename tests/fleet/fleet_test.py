@@ -131,7 +131,7 @@ class Fleet(fleet.FleetTest):
             self.wait_until_equal(leader, follower)
         usual_m = self.usual_steps(followers[0])
 
-        def disturb(case, action):
+        def disturb(case, action, followers):
             before = [follower.counts() for follower in followers]
             began_s = time.monotonic()
             action()
@@ -141,13 +141,14 @@ class Fleet(fleet.FleetTest):
                 self.add_row_of_motion(f"{case}, {follower.name}", leader, follower, usual_m, began_s, took_s)
                 fleet.ROWS[-1] = (fleet.ROWS[-1][0], f"{now[2] - counts[2]} not in time", now[1] - counts[1], *fleet.ROWS[-1][3:])
 
-        disturb("1st server killed", cluster.nodes[0].kill)
-        disturb("2nd server killed", cluster.nodes[1].kill)
+        disturb("1st server killed", cluster.nodes[0].kill, followers)
+        disturb("2nd server killed", cluster.nodes[1].kill, followers)
         for node in cluster.nodes[:2]:
             node.start()
-        disturb("3rd server hangs", cluster.nodes[2].hold)
-        disturb("it goes on", cluster.nodes[2].go_on)
-        for daemon in (leader, *followers):
+        disturb("3rd server hangs", cluster.nodes[2].hold, followers)
+        # It still knows the leaf from before: the others see a loop, and may refuse the leaf for 30 s (nats-server 2.9.10).
+        disturb("it goes on", cluster.nodes[2].go_on, followers[:1])
+        for daemon in (leader, followers[0]):
             daemon.wait_for_feed("trouble", "^$")
 
     def test_what_differs_is_named(self):
@@ -167,6 +168,24 @@ class Fleet(fleet.FleetTest):
         equal = sum(bytes_of_wind(frame) == winds[frame.tick] for frame in common)
         add_row("another scene: the wind", equal=f"{equal} of {len(common)}")
         self.assertGreater(equal, len(common) / 2)
+
+    def test_another_build_is_named(self):
+        server = Server(self, "server")
+        other = Client(self, server)
+        other.subscribe("wind.ask")
+        follower = Daemon(self, "follower", follow=server.address)
+        makeup = {"epoch": 5, "delay": 0.3, "software": "yuragi 99.0", "motion": 99, "rate": RATE_HZ, "wind": 1, "scenes": []}
+
+        def lead():
+            """Publishes a tick that cannot be read here, and introduces itself."""
+            other.publish("wind.tick", b"a tick of another layout")
+            questions = other.kept("wind.ask")
+            if questions:
+                other.publish(questions[-1][1], b"I" + json.dumps(makeup).encode())
+            return re.search(r"cannot follow the leader: it has version 99 of the motion \(yuragi 99\.0\), this one version \d+ \(yuragi .*"
+                             r"its own sensors are used", follower.feed()["trouble"])
+        follower.stream.wait_until(lead, "the other build in its status", every=RATE_HZ // 3)
+        add_row("another build: named in its status")
 
     def test_old_ticks_and_garbage_change_nothing(self):
         server = Server(self, "server")

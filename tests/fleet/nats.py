@@ -18,7 +18,8 @@ class Server:
         self.file = os.path.join(test.folder, name + ".conf")
         with open(self.file, "w", encoding="utf-8") as file:
             # Such a server is left by its leaf nodes and its neighbours within 1.5 s when it hangs.
-            file.write(f'host: "127.0.0.1"\nport: {self.port}\nserver_name: "{name}"\nlogtime: false\nping_interval: "500ms"\nping_max: 2\n{more}')
+            file.write(f'host: "127.0.0.1"\nport: {self.port}\nserver_name: "{name}"\nlogtime: true\nping_interval: "500ms"\nping_max: 2\n{more}')
+        test.servers.append(self)
         self.start()
 
     def start(self):
