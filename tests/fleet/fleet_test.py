@@ -1,0 +1,300 @@
+#!/usr/bin/env python3
+"""A leader and its followers by way of real NATS servers: the same poses at the same ticks, whatever is lost, ends or hangs.
+
+usage: fleet_test.py FOLDER_OF_PROGRAMS
+
+Prints a table: a step is relative to the largest one in the same wind without a disturbance.
+"""
+import json
+import os
+import random
+import re
+import signal
+import struct
+import subprocess
+import sys
+import time
+import unittest
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
+import fleet  # noqa: E402
+from programs import HANG_S  # noqa: E402
+from fleet import RATE_HZ, Daemon, add_row  # noqa: E402
+from nats import Client, Cluster, LossyNetwork, Server  # noqa: E402
+
+fleet.FleetTest.programs = os.path.abspath(sys.argv.pop(1))
+tearDownModule = fleet.print_table
+MAX_HALT = RATE_HZ  # periods without a frame: a daemon that waits for its leader has none for longer
+MAX_STEP = 8.0  # relative to the usual largest one, 1 to 5 measured: without a fade it is 12 to 26
+LOGINS = {"leader": "leader:its-secret", "follower": "follower:another-secret"}
+PERMISSIONS = """
+authorization {
+  users: [
+    { user: "leader", password: "its-secret",
+      permissions: { publish: ["wind.tick", "_INBOX.>"], subscribe: ["wind.tick", "wind.ask", "_INBOX.>"] } }
+    { user: "follower", password: "another-secret",
+      permissions: { publish: ["wind.ask"], subscribe: ["wind.tick", "_INBOX.>"] } }
+  ]
+}
+"""
+
+
+class Fleet(fleet.FleetTest):
+    def test_followers_that_join_late_have_the_leaders_poses(self):
+        server = Server(self, "server")
+        leader = Daemon(self, "leader", lead=server.address, scenes=fleet.SCENES)
+        leader.stream.wait_for_frames(3 * RATE_HZ)
+        began_s = time.monotonic()
+        followers = [Daemon(self, f"follower-{i}", follow=server.address, scenes=fleet.SCENES, speed_m_s=2.0) for i in range(3)]
+        for follower in followers:
+            took_s = self.wait_until_equal(leader, follower, began_s, ticks=3 * RATE_HZ)
+            common, equal = self.share_equal(leader, follower, began_s + took_s)
+            add_row(f"late join, {follower.name}", equal=f"{equal} of {common}", seconds=took_s)
+            follower.wait_for_feed("sends", "the same picture as its leader")
+
+    def test_lost_ticks_are_had_again(self):
+        server = Server(self, "server")
+        network = LossyNetwork(self, server, ".tick", seed=1)
+        leader = Daemon(self, "leader", lead=server.address)
+        follower = Daemon(self, "follower", follow=network.address)
+        self.wait_until_equal(leader, follower)
+        before, lost = follower.counts(), network.lost
+        began_s, network.share = time.monotonic(), 0.15
+        took_s = self.wait_until_equal(leader, follower, began_s, ticks=6 * RATE_HZ)
+        network.share = 0.0
+        lost = network.lost - lost
+        self.assertGreater(lost, 10)
+        follower.stream.wait_for_frames(RATE_HZ)  # the last one is had again
+        after = follower.counts()
+        self.assertGreaterEqual(after[1] - before[1], lost - (after[2] - before[2]))
+        common, equal = self.share_equal(leader, follower, began_s)
+        if after[2] == before[2]:  # all came in time
+            self.assertEqual(equal, common, self.logs())
+        add_row("15 % of ticks lost", lost, after[1] - before[1], equal=f"{equal} of {common}", seconds=took_s)
+
+    def usual_steps(self, follower):
+        """The largest step of each scene, in its leader's wind."""
+        return follower.stream.largest_steps_m(follower.stream.wait_for_frames(3 * RATE_HZ))
+
+    def add_row_of_motion(self, case, leader, follower, usual_m, began_s, seconds):
+        """Checks how the follower has moved since then."""
+        frames = follower.stream.since(began_s)
+        halt, step = follower.stream.longest_halt(frames), follower.stream.largest_relative_step(usual_m, frames)
+        common, equal = self.share_equal(leader, follower, began_s)
+        add_row(f"{case}; {len(frames)} frames, longest halt {halt} ticks", step=step, equal=f"{equal} of {common}", seconds=seconds)
+        self.assertLess(halt, MAX_HALT, self.logs())
+        self.assertLess(step, MAX_STEP, self.logs())
+
+    def test_a_leader_that_is_killed_and_comes_back(self):
+        server = Server(self, "server")
+        leader = Daemon(self, "leader", lead=server.address)
+        followers = [Daemon(self, f"follower-{i}", follow=server.address, speed_m_s=2.0) for i in range(2)]
+        for follower in followers:
+            self.wait_until_equal(leader, follower)
+        usual_m = self.usual_steps(followers[0])
+        began_s = time.monotonic()
+        leader.end(signal.SIGKILL)
+        for follower in followers:
+            follower.wait_for_feed("trouble", "the leader is silent")
+        leader = Daemon(self, "leader-again", lead=server.address)
+        again_s = time.monotonic()
+        for follower in followers:
+            took_s = self.wait_until_equal(leader, follower, again_s)
+            self.add_row_of_motion(f"leader killed and back, {follower.name}", leader, follower, usual_m, began_s, took_s)
+
+    def test_a_stand_by_leads_while_the_leader_is_away(self):
+        server = Server(self, "server")
+        leader = Daemon(self, "leader", lead=server.address)
+        stand_by = Daemon(self, "stand-by", lead=server.address, follow=server.address)
+        follower = Daemon(self, "follower", follow=server.address)
+        for one in (stand_by, follower):
+            self.wait_until_equal(leader, one)
+        usual_m = self.usual_steps(follower)
+        began_s = time.monotonic()
+        leader.end(signal.SIGKILL)
+        stand_by.wait_for(r"no leader is heard: this daemon leads")
+        led_s = time.monotonic()
+        took_s = self.wait_until_equal(stand_by, follower, led_s)
+        self.add_row_of_motion("leader killed, the stand-by leads", stand_by, follower, usual_m, began_s, took_s)
+        again_s = time.monotonic()
+        leader = Daemon(self, "leader-again", lead=server.address)
+        stand_by.wait_for(r"another daemon leads again")
+        for one in (stand_by, follower):
+            took_s = self.wait_until_equal(leader, one, again_s)
+            self.add_row_of_motion(f"the leader is back, {one.name}", leader, one, usual_m, again_s, took_s)
+
+    def test_servers_that_are_killed_or_hang(self):
+        cluster = Cluster(self)
+        leader = Daemon(self, "leader", lead=cluster.addresses())
+        followers = [Daemon(self, "follower", follow=cluster.addresses(1)), Daemon(self, "at-the-leaf", follow=cluster.leaf.address)]
+        for follower in followers:
+            self.wait_until_equal(leader, follower)
+        usual_m = self.usual_steps(followers[0])
+
+        def disturb(case, action, followers):
+            before = [follower.counts() for follower in followers]
+            began_s = time.monotonic()
+            action()
+            for follower, counts in zip(followers, before):
+                took_s = self.wait_until_equal(leader, follower, began_s)
+                now = follower.counts()
+                self.add_row_of_motion(f"{case}, {follower.name}", leader, follower, usual_m, began_s, took_s)
+                fleet.ROWS[-1] = (fleet.ROWS[-1][0], f"{now[2] - counts[2]} not in time", now[1] - counts[1], *fleet.ROWS[-1][3:])
+
+        disturb("1st server killed", cluster.nodes[0].kill, followers)
+        disturb("2nd server killed", cluster.nodes[1].kill, followers)
+        for node in cluster.nodes[:2]:
+            node.start()
+        disturb("3rd server hangs", cluster.nodes[2].hold, followers)
+        # It still knows the leaf from before: the others see a loop, and may refuse the leaf for 30 s (nats-server 2.9.10).
+        disturb("it goes on", cluster.nodes[2].go_on, followers[:1])
+        for daemon in (leader, followers[0]):
+            daemon.wait_for_feed("trouble", "^$")
+
+    def test_what_differs_is_named(self):
+        server = Server(self, "server")
+        leader = Daemon(self, "leader", lead=server.address)
+        other_seed = Daemon(self, "other-seed", follow=server.address, seed=fleet.SEED + 1)
+        other_scene = Daemon(self, "other-scene", follow=server.address, scenes={**{name: fleet.SCENES[name] for name in fleet.FEW},
+                                                                              "flag": fleet.SCENES["flag"] + "\nhalf_lift_speed = 7.0"})
+        other_seed.wait_for_feed("trouble", r"cannot follow the leader: its seed or its \[wind\] evolving is another one")
+        other_scene.wait_for_feed("sends", r"the leader's wind, another picture; .*: scene flag is another one there$")
+        self.assertEqual(other_scene.feed()["trouble"], "")
+        began_s = time.monotonic()
+        other_scene.stream.wait_for_frames(2 * RATE_HZ)
+        winds = {frame.tick: bytes_of_wind(frame) for frame in leader.stream.frames}
+        common = [frame for frame in other_scene.stream.since(began_s) if frame.tick in winds]
+        self.assertGreater(len(common), RATE_HZ)
+        equal = sum(bytes_of_wind(frame) == winds[frame.tick] for frame in common)
+        add_row("another scene: the wind", equal=f"{equal} of {len(common)}")
+        self.assertGreater(equal, len(common) / 2)
+
+    def test_another_build_is_named(self):
+        server = Server(self, "server")
+        other = Client(self, server)
+        other.subscribe("wind.ask")
+        follower = Daemon(self, "follower", follow=server.address)
+        makeup = {"epoch": 5, "delay": 0.3, "software": "yuragi 99.0", "motion": 99, "rate": RATE_HZ, "wind": 1, "scenes": []}
+
+        def lead():
+            """Publishes a tick that cannot be read here, and introduces itself."""
+            other.publish("wind.tick", b"a tick of another layout")
+            questions = other.kept("wind.ask")
+            if questions:
+                other.publish(questions[-1][1], b"I" + json.dumps(makeup).encode())
+            return re.search(r"cannot follow the leader: it has version 99 of the motion \(yuragi 99\.0\), this one version \d+ \(yuragi .*"
+                             r"its own sensors are used", follower.feed()["trouble"])
+        follower.stream.wait_until(lead, "the other build in its status", every=RATE_HZ // 3)
+        add_row("another build: named in its status")
+
+    def test_old_ticks_and_garbage_change_nothing(self):
+        server = Server(self, "server")
+        anyone = Client(self, server)
+        for subject in ("wind.tick", "wind.ask"):
+            anyone.subscribe(subject)
+        leader = Daemon(self, "leader", lead=server.address)
+        follower = Daemon(self, "follower", follow=server.address)
+        self.wait_until_equal(leader, follower)
+        leader.end(signal.SIGKILL)
+        old = [payload for _, _, payload in anyone.kept("wind.tick")]
+        follower.wait_for_feed("trouble", "the leader is silent")
+        leader = Daemon(self, "leader-again", lead=server.address)
+        began_s = time.monotonic()
+        self.wait_until_equal(leader, follower, began_s)
+        questions = anyone.kept("wind.ask")
+        before, attack_s, chance = follower.counts(), time.monotonic(), random.Random(2)
+        now = [payload for _, _, payload in anyone.kept("wind.tick")][-50:]
+        inbox = questions[-1][1]
+        self.assertRegex(inbox, r"^_INBOX\.")
+        sent = 0
+        for tick in old[-50:] + now:
+            anyone.publish("wind.tick", tick)
+            damaged = bytearray(tick)
+            damaged[chance.randrange(len(tick))] ^= 1 << chance.randrange(8)
+            for garbage in (bytes(damaged), tick[:chance.randrange(len(tick))], chance.randbytes(chance.randrange(2000))):
+                for subject in ("wind.tick", "wind.ask", inbox):
+                    for kind in (b"", b"I", b"T", b"S"):
+                        anyone.publish(subject, kind + garbage, inbox)
+                        sent += 1
+        for question in (b"{", b"[" * 30000, b'{"ask":"ticks","epoch":1,"from":0,"to":18446744073709551615}', b'{"ask":"state","epoch":-1}'):
+            anyone.publish("wind.ask", question, inbox)
+            anyone.publish("wind.ask", question, "wind.tick")
+        anyone.flush()
+        took_s = self.wait_until_equal(leader, follower, attack_s, ticks=3 * RATE_HZ)
+        common, equal = self.share_equal(leader, follower, attack_s)
+        add_row(f"{sent} old ticks and garbage", equal=f"{equal} of {common}", seconds=took_s)
+        after = follower.counts()
+        if after[2] == before[2]:  # all ticks came in time
+            self.assertEqual((equal, after[3]), (common, before[3]), self.logs())
+        self.assertEqual((leader.feed()["trouble"], follower.feed()["trouble"]), ("", ""))
+
+    def test_a_follower_without_rights_cannot_lead(self):
+        server = Server(self, "server", PERMISSIONS)
+        leader = Daemon(self, "leader", lead=server.address, wind=self.credentials("leader"))
+        follower = Daemon(self, "follower", follow=server.address, wind=self.credentials("follower"))
+        self.wait_until_equal(leader, follower)
+        hostile = Client(self, server, LOGINS["follower"])
+        hostile.subscribe("wind.tick")
+        hostile.wait_until(lambda: len(hostile.messages) >= 5)
+        began_s = time.monotonic()
+        for _, _, tick in hostile.kept("wind.tick"):
+            hostile.publish("wind.tick", tick)
+        hostile.publish("_INBOX.anybody", b"T")
+        hostile.wait_until(lambda: any('Publish to "_INBOX.anybody"' in error for error in hostile.errors))
+        self.assertTrue(any('Publish to "wind.tick"' in error for error in hostile.errors), hostile.errors)
+        # It may ask, but not so much that others get nothing.
+        epoch = self.epoch(hostile)
+        for _ in range(2000):
+            hostile.publish("wind.ask", b'{"ask":"ticks","epoch":%d,"from":0,"to":18446744073709551615}' % epoch, "_INBOX.nobody")
+        hostile.flush()
+        leader.wait_for_feed("sends", r"leads; 2\d\d\d questions answered")
+        sent_again = int(re.search(r"(\d+) ticks sent again", leader.feed()["sends"]).group(1))
+        self.assertGreater(sent_again, 0)
+        self.assertLess(sent_again, 30_000)  # of 100,000
+        pretender = Daemon(self, "pretender", lead=server.address, wind=self.credentials("follower"))
+        pretender.wait_for_feed("trouble", r"does not permit this user something .*wind\.(tick|ask)")
+        wrong = Daemon(self, "wrong-password", follow=server.address, wind=self.credentials("follower", "follower:wrong"))
+        wrong.wait_for_feed("trouble", "does not accept this user: check the file of credentials")
+        took_s = self.wait_until_equal(leader, follower, began_s, ticks=2 * RATE_HZ)
+        common, equal = self.share_equal(leader, follower, began_s)
+        add_row("a publisher without rights", equal=f"{equal} of {common}", seconds=took_s)
+        self.assertEqual((leader.feed()["trouble"], follower.feed()["trouble"]), ("", ""))
+
+    @staticmethod
+    def epoch(client):
+        """Of the leader."""
+        client.subscribe("_INBOX.client")
+        client.publish("wind.ask", b'{"ask":"leader"}', "_INBOX.client")
+        client.wait_until(lambda: client.kept("_INBOX.client"))
+        return json.loads(client.kept("_INBOX.client")[0][2][1:])["epoch"]
+
+    def credentials(self, user, text=None):
+        """A file with the login of this user, as a line of [wind]."""
+        path = os.path.join(self.folder, f"{user}-{text is None}.login")
+        with open(path, "w", encoding="utf-8", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
+            file.write((text or LOGINS[user]) + "\n")
+        return f'credentials = "{path}"'
+
+    def test_by_tls(self):
+        certificate, key = (os.path.join(self.folder, name) for name in ("certificate.pem", "key.pem"))
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "1", "-subj",
+                        "/CN=localhost", "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-out", certificate, "-keyout", key],
+                       check=True, capture_output=True, timeout=HANG_S)
+        server = Server(self, "server", f'tls {{ cert_file: "{certificate}", key_file: "{key}" }}\n', scheme="tls")
+        believed = f'authorities = "{certificate}"'
+        leader = Daemon(self, "leader", lead=server.address, wind=believed)
+        follower = Daemon(self, "follower", follow=server.address, wind=believed)
+        stranger = Daemon(self, "stranger", follow=server.address)
+        took_s = self.wait_until_equal(leader, follower, leader.stream.frames[0].come_s if leader.stream.frames else time.monotonic())
+        stranger.wait_for_feed("trouble", "the TLS connection to .* failed")
+        common, equal = self.share_equal(leader, follower, time.monotonic() - 1.0)
+        add_row("by TLS", equal=f"{equal} of {common}", seconds=took_s)
+
+
+def bytes_of_wind(frame):
+    """Its speed: the age of a reading is that of the frame."""
+    return struct.pack("<ff", frame.message.wind.u_m_s, frame.message.wind.v_m_s)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
