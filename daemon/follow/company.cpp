@@ -58,12 +58,14 @@ Company::Company(const settings::Config& config, std::size_t state_bytes, animat
                  std::function<void()> on_arrival, Follower::Listener listener)
     : config_(config.wind.lead),
       ticks_subject_(config_.channel + ".tick"),
+      states_subject_(config_.channel + ".state"),
       questions_subject_(config_.channel + ".ask"),
       reports_subject_(config_.channel + ".node"),
       node_(config_.node.empty() ? host_name() : config_.node),
       steps_(steps),
       makeup_(makeup_of(config)),
-      leader_(makeup_, config.animation.rate_hz, from_seconds(config_.delay_s), state_bytes, ticks_subject_, steps,
+      leader_(makeup_, config.animation.rate_hz, from_seconds(config_.delay_s), state_bytes,
+              {.ticks = ticks_subject_, .states = states_subject_}, steps,
               [this](const std::string& subject, const Bytes& bytes) { link_.publish(subject, bytes); }),
       follower_(
           makeup_, from_seconds(config_.delay_s), steps,
@@ -76,11 +78,16 @@ Company::Company(const settings::Config& config, std::size_t state_bytes, animat
       hangs_after_(at_least(kHangsAfter, kHangsTicks, config.animation.rate_hz)),
       stands_in_after_(at_least(kStandsInAfter, kStandsInTicks, config.animation.rate_hz)),
       leave_after_(hangs_after_),
-      link_(link_settings(config_, makeup_.software),
-            config_.lead.empty() ? std::vector{ticks_subject_}
-                                 : std::vector{ticks_subject_, questions_subject_, reports_subject_},
-            std::move(on_arrival)) {
+      link_(link_settings(config_, makeup_.software), subjects(), std::move(on_arrival)) {
   if (leads_) lead(now);
+}
+
+/// What this daemon's part takes.
+std::vector<std::string> Company::subjects() const {
+  std::vector<std::string> all = {ticks_subject_};
+  if (!config_.follow.empty()) all.push_back(states_subject_);
+  if (!config_.lead.empty()) all.insert(all.end(), {questions_subject_, reports_subject_});
+  return all;
 }
 
 void Company::lead(const Instant& now) {

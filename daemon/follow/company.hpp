@@ -26,6 +26,7 @@ NatsSettings link_settings(const settings::LeadConfig& config, std::string name)
 /// and leads while no leader is heard. Subjects, which a server's permissions can name (CHANNEL is [wind] channel):
 ///
 ///     CHANNEL.tick   from the leader to all
+///     CHANNEL.state  the state of the leader's scenes, when several followers have asked for it
 ///     CHANNEL.ask    from followers to the leader, who replies to _INBOX.>
 ///     CHANNEL.node   from each daemon to those that may lead: what becomes of it (Fleet)
 ///
@@ -70,6 +71,7 @@ class Company {
 
  private:
   bool stands_by() const noexcept { return !config_.lead.empty() && !config_.follow.empty(); }
+  std::vector<std::string> subjects() const;
   void lead(const Instant& now);
   void keep_leading(const Instant& now);
   void leave_hanging_server(MonoTime now);
@@ -77,7 +79,7 @@ class Company {
   std::string part(MonoTime now) const;
 
   const settings::LeadConfig config_;
-  const std::string ticks_subject_, questions_subject_, reports_subject_;
+  const std::string ticks_subject_, states_subject_, questions_subject_, reports_subject_;
   const std::string node_;
   animation::LedSteps& steps_;
   PictureMakeup makeup_;

@@ -7,12 +7,14 @@
 namespace yuragi::daemon::follow {
 namespace {
 
-/// How long before its time a tick is handed to the animation: between two steps of this thread.
+/// How long before its time the tick after a gap is handed to the animation: between two steps of this thread.
 constexpr int kHandedEarly = 2;
 constexpr Nanoseconds kAskLeaderFirst = std::chrono::milliseconds(250), kAskLeaderLongest = std::chrono::seconds(2);
 /// Some replies' times, so that none is asked for twice in vain.
 constexpr Nanoseconds kAskTicks = std::chrono::milliseconds(60);
-constexpr Nanoseconds kAskStateFirst = std::chrono::milliseconds(1500), kAskStateLongest = std::chrono::seconds(10);
+constexpr Nanoseconds kAskStateFirst = std::chrono::seconds(2), kAskStateLongest = std::chrono::seconds(10);
+/// A state of which a part has come so lately is on its way.
+constexpr Nanoseconds kArriving = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -110,8 +112,10 @@ void Follower::take(const StatePart& part, MonoTime now) {
       is_loading_)
     return;
   if (!arriving_ || arriving_->number != part.number || arriving_->total_bytes != part.total_bytes)
-    arriving_ = {.number = part.number, .total_bytes = part.total_bytes, .arrived_bytes = 0, .parts = {}};
+    arriving_ = {
+        .number = part.number, .total_bytes = part.total_bytes, .arrived_bytes = 0, .latest = now, .parts = {}};
   if (!arriving_->parts.emplace(part.first_byte, part.bytes).second) return;
+  arriving_->latest = now;
   arriving_->arrived_bytes += part.bytes.size();
   if (arriving_->arrived_bytes < arriving_->total_bytes) return;
   auto order = std::make_unique<animation::StateOrder>();
@@ -158,7 +162,7 @@ const wind::ground::DrivingWind* Follower::wind() const noexcept {
 
 void Follower::ask_for_ticks(MonoTime now) {
   if (!ticks_.is_due(now)) return;
-  for (const PlayOut::Gap& gap : play_out_.gaps()) {
+  for (const PlayOut::Gap& gap : play_out_.gaps(now)) {
     if (gap.to == 0) break;
     ++counts_.gaps;
     ticks_.ask(now, kAskTicks, kAskTicks);
@@ -174,7 +178,8 @@ void Follower::ask_for_state(MonoTime now) {
     if (!is_needed) state_ = {};
     return;
   }
-  if (at.epoch != play_out_.epoch() || !state_.is_due(now)) return;
+  const bool is_coming = arriving_ && now - arriving_->latest < kArriving;
+  if (at.epoch != play_out_.epoch() || is_coming || !state_.is_due(now)) return;
   state_.ask(now, kAskStateFirst, kAskStateLongest);
   ask_(encode(Question{.about = Question::About::kState, .epoch = play_out_.epoch()}));
 }
@@ -198,6 +203,7 @@ void Follower::advance(MonoTime now) {
   if (heard_ || heard_unknown_ || other_) ask_who_leads(now);
   if (is_silent(now) || !is_in_wind_) {
     if (!uses_own_wind_ && steps_.use_own_wind()) uses_own_wind_ = true;
+    state_ = {};
     return;
   }
   play(now);

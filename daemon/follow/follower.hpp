@@ -129,6 +129,7 @@ class Follower {
   /// A state that arrives in parts, in any order.
   struct Arriving {
     std::uint64_t number = 0, total_bytes = 0, arrived_bytes = 0;
+    MonoTime latest{};
     std::map<std::uint64_t, Bytes> parts;  ///< by their first byte
   };
   std::optional<Arriving> arriving_;

@@ -14,13 +14,13 @@ constexpr std::size_t kSlack_bytes = 64 * 1024;
 
 }  // namespace
 
-Leader::Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, std::string subject,
+Leader::Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, Subjects subjects,
                animation::LedSteps& steps, Send send)
     : makeup_(std::move(makeup)),
       rate_hz_(rate_hz),
       delay_(delay),
       state_bytes_(state_bytes),
-      subject_(std::move(subject)),
+      subjects_(std::move(subjects)),
       steps_(steps),
       send_(std::move(send)) {}
 
@@ -31,6 +31,7 @@ void Leader::begin_epoch(UtcTime now, std::uint64_t after, std::uint64_t number)
   number_ = std::max({static_cast<std::uint64_t>(by_clock), number, number_}) + 1;
   kept_.clear();
   waiting_.clear();
+  parts_.clear();
   is_saving_ = false;
 }
 
@@ -61,7 +62,11 @@ void Leader::make_tick(const wind::ground::DrivingWind& wind, const Instant& at,
   cues_.clear();
   steps_.push(at.mono + delay_, tick, true);
   Bytes bytes = encode(tick);
-  send_(subject_, bytes);
+  send_(subjects_.ticks, bytes);
+  if (!parts_.empty()) {
+    send_(parts_.front().first, parts_.front().second);
+    parts_.pop_front();
+  }
   kept_.emplace_back(number_, std::move(bytes));
   const auto most = static_cast<std::uint64_t>(rate_hz_ * static_cast<double>(kKept.count()));
   while (kept_.front().first + most < number_) kept_.pop_front();
@@ -124,11 +129,11 @@ void Leader::advance(MonoTime now) {
     if (!saved) return;
     is_saving_ = false;
     if (saved->is_done && saving_epoch_ == epoch_) {
-      send_state(*saved);
+      queue_state(*saved);
       waiting_.clear();
     }
   }
-  if (waiting_.empty() || now - saved_ < kSaveEvery) return;
+  if (waiting_.empty() || !parts_.empty() || now - saved_ < kSaveEvery) return;
   auto order = std::make_unique<animation::StateOrder>();
   order->state.reserve(state_bytes_ + kSlack_bytes);
   if (!steps_.order(order)) return;
@@ -137,19 +142,19 @@ void Leader::advance(MonoTime now) {
   saving_epoch_ = epoch_;
 }
 
-void Leader::send_state(const animation::StateOrder& saved) {
+void Leader::queue_state(const animation::StateOrder& saved) {
   ++counts_.states;
   state_bytes_ = saved.state.size();
+  const std::string& to = waiting_.size() == 1 ? waiting_.front() : subjects_.states;
   const std::span<const std::uint8_t> state(saved.state);
   for (std::size_t first = 0; first < state.size(); first += kMostInMessage_bytes) {
     const auto part = state.subspan(first, std::min(kMostInMessage_bytes, state.size() - first));
-    const Bytes message = encode(StatePart{.epoch = epoch_,
-                                           .number = saved.number,
-                                           .made_of = makeup_.hash(),
-                                           .total_bytes = state.size(),
-                                           .first_byte = first,
-                                           .bytes = Bytes(part.begin(), part.end())});
-    for (const std::string& follower : waiting_) send_(follower, message);
+    parts_.emplace_back(to, encode(StatePart{.epoch = epoch_,
+                                             .number = saved.number,
+                                             .made_of = makeup_.hash(),
+                                             .total_bytes = state.size(),
+                                             .first_byte = first,
+                                             .bytes = Bytes(part.begin(), part.end())}));
   }
 }
 

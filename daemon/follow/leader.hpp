@@ -26,14 +26,20 @@ class Leader {
 
   /// For how long a tick can be asked for.
   static constexpr std::chrono::seconds kKept{60};
-  /// The largest number of followers that wait for a state; further ones ask again.
-  static constexpr std::size_t kMaxWaiting = 64;
+  /// The largest number of followers that are remembered as waiting for a state. More get it, too: what several wait
+  /// for is sent to all.
+  static constexpr std::size_t kMaxWaiting = 2;
   /// The most that is sent as introductions and as ticks once more, so that no follower's questions fill the link.
   /// Further questions are refused; followers ask again.
   static constexpr double kMaxReplies_bytes_s = 8e6;
 
-  /// `state_bytes`: the size of the animation's state. `subject`: of the ticks.
-  Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, std::string subject,
+  /// The subjects of ticks, and of a state that several followers have asked for.
+  struct Subjects {
+    std::string ticks, states;
+  };
+
+  /// `state_bytes`: the size of the animation's state.
+  Leader(PictureMakeup makeup, double rate_hz, Nanoseconds delay, std::size_t state_bytes, Subjects subjects,
          animation::LedSteps& steps, Send send);
 
   /// Begins an epoch that is later than `after`, with a number above `number`.
@@ -70,13 +76,13 @@ class Leader {
   void make_tick(const wind::ground::DrivingWind& wind, const Instant& at, std::uint32_t periods);
   void reply(const std::string& reply_to, const Bytes& bytes);
   void send_ticks(const Question& question, const std::string& reply_to);
-  void send_state(const animation::StateOrder& saved);
+  void queue_state(const animation::StateOrder& saved);
 
   PictureMakeup makeup_;
   const double rate_hz_;
   const Nanoseconds delay_;
   std::size_t state_bytes_;
-  const std::string subject_;
+  const Subjects subjects_;
   animation::LedSteps& steps_;
   Send send_;
 
@@ -87,6 +93,8 @@ class Leader {
   std::vector<std::string> waiting_;                  ///< for a state
   MonoTime saved_{};
   bool is_saving_ = false;
+  /// The parts of a state: one a tick, so that it delays no tick.
+  std::deque<std::pair<std::string, Bytes>> parts_;
   Fleet fleet_;
   std::uint64_t saving_epoch_ = 0;
   Counts counts_;

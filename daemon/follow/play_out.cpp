@@ -63,7 +63,7 @@ const wire::lead::WindTick* PlayOut::next(MonoTime until) {
   for (std::uint64_t number = std::max(played_ + 1, first_kept); number <= newest_; ++number) {
     const wire::lead::WindTick* const tick = at(number);
     if (tick == nullptr) continue;
-    if (due(number) > until) return nullptr;
+    if (number - tick->periods > played_ && due(number) > until) return nullptr;
     played_ = number;
     return tick;
   }
@@ -82,7 +82,7 @@ bool PlayOut::go_back_to(std::uint64_t number) {
   return true;
 }
 
-std::array<PlayOut::Gap, PlayOut::kMaxGaps> PlayOut::gaps() const noexcept {
+std::array<PlayOut::Gap, PlayOut::kMaxGaps> PlayOut::gaps(MonoTime now) const noexcept {
   std::array<Gap, kMaxGaps> gaps{};
   std::size_t count = 0;
   std::uint64_t before = played_;
@@ -90,7 +90,8 @@ std::array<PlayOut::Gap, PlayOut::kMaxGaps> PlayOut::gaps() const noexcept {
   for (std::uint64_t number = std::max(before + 1, first_kept); number <= newest_ && count < kMaxGaps; ++number) {
     const wire::lead::WindTick* const tick = at(number);
     if (tick == nullptr) continue;
-    if (number - tick->periods > before) gaps[count++] = {.from = before + 1, .to = number - tick->periods};
+    if (number - tick->periods > before && due(number - tick->periods) > now)
+      gaps[count++] = {.from = before + 1, .to = number - tick->periods};
     before = number;
   }
   return gaps;

@@ -32,8 +32,8 @@ class PlayOut {
   };
   Taken take(const wire::lead::WindTick& tick, MonoTime arrival);
 
-  /// The next tick in order that is due until then; null if there is none. A missing one is passed over when the one
-  /// after it is due. Valid until the next call.
+  /// The next tick in order, at whatever time it is due; null if it is missing. A missing one is passed over when the
+  /// one after it is due until then. Valid until the next call.
   const wire::lead::WindTick* next(MonoTime until);
   MonoTime due(std::uint64_t number) const noexcept;
 
@@ -44,8 +44,9 @@ class PlayOut {
     std::uint64_t from = 0, to = 0;  ///< the numbers of the first and the last period in it
   };
   static constexpr std::size_t kMaxGaps = 8;
-  /// The first gaps in what next() has not returned yet; the others are empty, and `to` is 0.
-  std::array<Gap, kMaxGaps> gaps() const noexcept;
+  /// The first gaps in what next() has not returned yet and whose time has not come; the others are empty, and `to` is
+  /// 0.
+  std::array<Gap, kMaxGaps> gaps(MonoTime now) const noexcept;
 
   /// The number of the newest tick; 0: none.
   std::uint64_t newest() const noexcept { return newest_; }

@@ -154,7 +154,7 @@ class FollowerTest : public ::testing::Test {
                  kRate_hz,
                  kDelay,
                  0,
-                 "wind.tick",
+                 {.ticks = "wind.tick", .states = "wind.state"},
                  leaders_.steps,
                  [this](const std::string& subject, const Bytes& bytes) {
                    const bool is_tick = subject == "wind.tick";
@@ -384,6 +384,18 @@ TEST_F(FollowerTest, AMessageForASubjectThatIsNoInboxIsNotAnswered) {
   EXPECT_EQ(network_.sent(), before);
   leader_.answer(encode(Question{}), "_INBOX.somebody", now_);
   EXPECT_EQ(network_.sent(), before + 1);
+}
+
+// Some followers ask, all get it: a hundred that lose their leader need one state, and no tick is late for it.
+TEST_F(FollowerTest, WhatSeveralWaitForIsSentOnce_APartATick) {
+  run(60);
+  const int before = network_.sent();
+  for (int follower = 0; follower < 100; ++follower)
+    leader_.answer(encode(Question{.about = Question::About::kState, .epoch = leader_.epoch()}),
+                   "_INBOX." + std::to_string(follower), now_);
+  run(120);
+  EXPECT_LE(network_.sent() - before, 240);
+  EXPECT_EQ(follower_.phase(now_), Follower::Phase::kSamePicture);
 }
 
 TEST_F(FollowerTest, StatesAreSavedAtMostOnceASecondHoweverManyAsk) {
