@@ -102,7 +102,7 @@ test("its picture is the desktop viewer's", { timeout: TEST_MS }, async () => {
     const name = `${shown}-${quality}`;
     const args = ["--camera", CAMERA, "--look", `quality=${quality}`, ...Object.values(scene).flatMap((one) => ["--scene", one])];
     const query = new URLSearchParams({ camera: CAMERA, look: `quality=${quality}`, words: "0", ...scene });
-    const desktop = [desktopPicture(`${name}-desktop`, args), desktopPicture(`${name}-desktop-again`, args)];
+    const desktop = desktopPicture(`${name}-desktop`, args);
     const file = path.join(screenshots, `${name}-browser.png`);
     let page = await world.open(`${url}?${query}`);
     // On a busy machine it soon draws fewer pixels; begun again it first draws all of them.
@@ -113,10 +113,13 @@ test("its picture is the desktop viewer's", { timeout: TEST_MS }, async () => {
       await page.context().close();
       page = await world.open(`${url}?${query}`);
     }
-    const apart = await psnr(...desktop);
-    const here = await psnr(desktop[0], file);
-    console.log(`${name}: desktop against desktop ${apart.toFixed(1)} dB, against browser ${here.toFixed(1)} dB`);
-    assert.ok(here >= Math.min(apart - 2, LEAST_DB[shown]), `${name}: ${here} dB`);
+    const here = await psnr(desktop, file);
+    console.log(`${name}: desktop against browser ${here.toFixed(1)} dB`);
+    // Less only where two pictures of the desktop differ as much.
+    if (here < LEAST_DB[shown]) {
+      const apart = await psnr(desktop, desktopPicture(`${name}-desktop-again`, args));
+      assert.ok(here >= apart - 2, `${name}: ${here} dB; desktop against desktop ${apart} dB`);
+    }
     assert.deepEqual(page.complaints, []);
     await page.context().close();
   }
@@ -125,7 +128,7 @@ test("its picture is the desktop viewer's", { timeout: TEST_MS }, async () => {
 test("it draws on while the quality changes", { timeout: TEST_MS }, async () => {
   const page = await world.open(`${url}?words=0`);
   await waitForPictures(page);
-  for (const quality of ["high", "low", "medium", "high", "low"]) {
+  for (const quality of ["high", "low", "medium"]) {
     await setQuality(quality);
     await page.waitForFunction((name) => window.wall.pace.startsWith("quality " + name), quality);
     await waitForPictures(page, 2);
