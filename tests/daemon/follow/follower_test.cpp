@@ -75,6 +75,7 @@ class Network {
   using Take = std::function<void(const Bytes&)>;
   void send(const Bytes& bytes, MonoTime now, bool is_tick, Take take) {
     ++sent_;
+    sent_bytes_ += bytes.size();
     if (is_cut || (is_tick && std::bernoulli_distribution(loss_of_ticks)(random_))) return;
     const int copies = std::bernoulli_distribution(doubled)(random_) ? 2 : 1;
     for (int copy = 0; copy < copies; ++copy) {
@@ -92,11 +93,13 @@ class Network {
   double loss_of_ticks = 0.0, doubled = 0.0, longest_s = 0.005;
   bool is_cut = false;
   int sent() const { return sent_; }
+  std::size_t sent_bytes() const { return sent_bytes_; }
 
  private:
   std::mt19937 random_{7};
   std::multimap<MonoTime, std::pair<Bytes, Take>> on_their_way_;
   int sent_ = 0;
+  std::size_t sent_bytes_ = 0;
 };
 
 class FollowerTest : public ::testing::Test {
@@ -396,6 +399,19 @@ TEST_F(FollowerTest, WhatSeveralWaitForIsSentOnce_APartATick) {
   run(120);
   EXPECT_LE(network_.sent() - before, 240);
   EXPECT_EQ(follower_.phase(now_), Follower::Phase::kSamePicture);
+}
+
+// They would fill the link, and the leader's own ticks would be lost.
+TEST_F(FollowerTest, AFloodOfQuestionsForTicksIsBoundedAndDelaysNobody) {
+  run(150);
+  const std::size_t before = network_.sent_bytes();
+  const Question all{.about = Question::About::kTicks, .epoch = leader_.epoch(), .from = 0, .to = ~std::uint64_t{0}};
+  for (int tick = 0; tick < 60; ++tick) {
+    for (int question = 0; question < 50; ++question) leader_.answer(encode(all), "_INBOX.nobody", now_);
+    run(1);
+  }
+  EXPECT_LT(static_cast<double>(network_.sent_bytes() - before), 2.5 * Leader::kMaxReplies_bytes_s);
+  EXPECT_EQ(same_share(), 1.0);
 }
 
 TEST_F(FollowerTest, StatesAreSavedAtMostOnceASecondHoweverManyAsk) {
