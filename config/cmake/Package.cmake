@@ -15,6 +15,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/examples DESTINATION share/doc/yu
 install(FILES ${PROJECT_SOURCE_DIR}/config/garden.toml ${PROJECT_SOURCE_DIR}/engine/wire/pose.fbs DESTINATION share/doc/yuragi/examples)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/prometheus DESTINATION share/doc/yuragi)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/proxies DESTINATION share/doc/yuragi)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/nats DESTINATION share/doc/yuragi)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/rehearsals DESTINATION share/doc/yuragi)
 
 # Made of what the programs say of themselves, when they are there.

@@ -26,17 +26,11 @@ fleet.FleetTest.programs = os.path.abspath(sys.argv.pop(1))
 tearDownModule = fleet.print_table
 MAX_HALT = RATE_HZ  # periods without a frame: a daemon that waits for its leader has none for longer
 MAX_STEP = 8.0  # relative to the usual largest one, 1 to 5 measured: without a fade it is 12 to 26
-LOGINS = {"leader": "leader:its-secret", "follower": "follower:another-secret"}
-PERMISSIONS = """
-authorization {
-  users: [
-    { user: "leader", password: "its-secret",
-      permissions: { publish: ["wind.*", "_INBOX.>"], subscribe: ["wind.*", "_INBOX.>"] } }
-    { user: "follower", password: "another-secret",
-      permissions: { publish: ["wind.ask", "wind.node"], subscribe: ["wind.tick", "wind.state", "_INBOX.>"] } }
-  ]
-}
-"""
+PASSWORDS = {"leader": "change-this", "follower": "change-this-too"}
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "nats", "leader-and-followers.conf"),
+          encoding="utf-8") as written:
+    PERMISSIONS = written.read()
+LOGINS = {user: f"{user}:{password}" for user, password in PASSWORDS.items()}
 
 
 class Fleet(fleet.FleetTest):
