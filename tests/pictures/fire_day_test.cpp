@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kWidth_px = 320;
 constexpr int kHeight_px = 200;
-constexpr std::array kSpeeds_m_s{0.5, 4.0, 9.0, 16.0};
+constexpr std::array kSpeeds_m_s{0.5, 9.0};
 constexpr double kSettling_s = 12.0;
 
 struct DayLight {
