@@ -14,9 +14,6 @@
 namespace yuragi::daemon::animation {
 namespace {
 
-// The longest step after a halt of the machine, however long it was.
-constexpr double kMaxStep_s = 0.1;
-
 void sleep_until(MonoTime deadline) {
   const Nanoseconds since_zero = deadline.time_since_epoch();
   const auto whole_s = std::chrono::floor<std::chrono::seconds>(since_zero);
@@ -131,13 +128,12 @@ void Loop::tick(const TickSchedule::Tick& tick) {
   wake_io_thread();
 }
 
-/// Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit; those of a leader
-/// one by one.
+/// Skipped ticks are made up for by one longer step; those of a leader one by one.
 LedSteps::Stepped Loop::step(const TickSchedule::Tick& tick) {
   const wind::ground::DrivingWind& wind = wind_.value();
   const std::uint64_t periods = tick.skipped + 1;
   if (led_ != nullptr) return led_->step(animation_, wind, clock_.now().mono, periods);
-  animation_.step(wind, std::min(static_cast<double>(periods) / rate_hz_, kMaxStep_s), periods);
+  animation_.step(wind, step_s(periods, rate_hz_), periods);
   return {.is_new = true, .number = tick.number, .utc = {}, .wind = &wind.state};
 }
 

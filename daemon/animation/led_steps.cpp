@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "daemon/animation/tick_schedule.hpp"
+
 namespace yuragi::daemon::animation {
 namespace {
 
@@ -15,8 +17,6 @@ constexpr int kMostAtOnce = 2;
 constexpr Nanoseconds kTooLate = std::chrono::seconds(5);
 /// How many periods after the last tick the next one is missing. Between 1 and 2 it is only not due yet.
 constexpr double kMissingAfter = 2.5;
-/// As the loop's: the longest step after a halt.
-constexpr double kMaxStep_s = 0.1;
 
 }  // namespace
 
@@ -114,8 +114,7 @@ bool LedSteps::make(Animation& animation) noexcept {
   const std::uint64_t periods = tick.number - at_.number;
   if (periods != tick.periods) at_.is_exact = false;
   for (std::size_t i = 0; i < tick.cue_count; ++i) {
-    const wire::lead::TickCue& cue = tick.cues[i];
-    animation.cue({.scene = cue.scene, .shown = cue.shown, .hide_others = cue.hide_others, .over_s = cue.over_s});
+    animation.cue(scene_cue_of(tick.cues[i]));
   }
   wind_ = tick.wind;
   utc_ = tick.utc;
@@ -141,7 +140,7 @@ void LedSteps::carry_out(Animation& animation, std::unique_ptr<StateOrder> order
 }
 
 void LedSteps::advance(Animation& animation, const wind::ground::DrivingWind& wind, std::uint64_t periods) noexcept {
-  animation.step(wind, std::min(static_cast<double>(periods) / rate_hz_, kMaxStep_s), periods);
+  animation.step(wind, step_s(periods, rate_hz_), periods);
   at_.number += periods;
 }
 

@@ -13,6 +13,11 @@
 
 namespace yuragi::daemon::animation {
 
+/// The cue of a leader's tick, for this animation.
+inline SceneCue scene_cue_of(const wire::lead::TickCue& cue) noexcept {
+  return {.scene = cue.scene, .shown = cue.shown, .hide_others = cue.hide_others, .over_s = cue.over_s};
+}
+
 /// An order to save the state of the animation, or to load it, between two of its steps.
 struct StateOrder {
   enum class Kind : std::uint8_t { kSave, kLoad };

@@ -1,10 +1,18 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/base/time.hpp"
 
 namespace yuragi::daemon::animation {
+
+/// The length of a step that makes up for this many periods, so that motion keeps its speed: after a halt of the
+/// machine, however long it was, at most kMaxStep_s.
+inline constexpr double kMaxStep_s = 0.1;
+inline double step_s(std::uint64_t periods, double rate_hz) noexcept {
+  return std::min(static_cast<double>(periods) / rate_hz, kMaxStep_s);
+}
 
 /// The schedule of the animation's ticks: at begin + n * period. A loop that is late skips the ticks that it missed and
 /// counts them; it never catches up.

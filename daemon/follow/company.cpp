@@ -1,12 +1,10 @@
 #include "daemon/follow/company.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include "daemon/settings/config_error.hpp"
 #include "engine/wire/lead/wind_tick.hpp"
@@ -35,11 +33,6 @@ std::string list_of(const std::vector<std::string>& texts) {
   return fmt::format("{}", fmt::join(texts, "; "));
 }
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
-}
-
 }  // namespace
 
 NatsSettings link_settings(const settings::LeadConfig& config, std::string name) {
@@ -54,14 +47,14 @@ void check_company(const settings::Config& config) {
   if (const auto refusal = NatsLink::refusal()) throw settings::ConfigError("[wind] lead, follow: " + *refusal);
 }
 
-Company::Company(const settings::Config& config, std::size_t state_bytes, animation::LedSteps& steps, Instant now,
-                 std::function<void()> on_arrival, Follower::Listener listener)
+Company::Company(const settings::Config& config, const std::string& machine, std::size_t state_bytes,
+                 animation::LedSteps& steps, Instant now, std::function<void()> on_arrival, Follower::Listener listener)
     : config_(config.wind.lead),
       ticks_subject_(config_.channel + ".tick"),
       states_subject_(config_.channel + ".state"),
       questions_subject_(config_.channel + ".ask"),
       reports_subject_(config_.channel + ".node"),
-      node_(config_.node.empty() ? host_name() : config_.node),
+      node_(config_.node.empty() ? machine : config_.node),
       steps_(steps),
       makeup_(makeup_of(config)),
       leader_(makeup_, config.animation.rate_hz, from_seconds(config_.delay_s), state_bytes,
@@ -184,8 +177,7 @@ void Company::report(NodeReport report, MonoTime now) {
   link_.publish(reports_subject_, encode(report));
 }
 
-std::string Company::trouble(MonoTime now) const {
-  const NatsLink::State link = link_.state();
+std::string Company::trouble(const NatsLink::State& link, MonoTime now) const {
   if (!link.trouble.empty()) return link.trouble;
   if (leads_ && two_leaders_ && now - *two_leaders_ < kTakesOverEvery)
     return "another daemon leads on the channel " + config_.channel + ": give each leader a channel of its own";
@@ -221,7 +213,7 @@ Company::Status Company::status(MonoTime now) const {
   Status status{.server = link.server,
                 .channel = config_.channel,
                 .part = part(now),
-                .trouble = trouble(now),
+                .trouble = trouble(link, now),
                 .messages = link.sent + link.received,
                 .bytes = link.sent_bytes + link.received_bytes,
                 .nodes = {},
@@ -229,7 +221,7 @@ Company::Status Company::status(MonoTime now) const {
   if (leads_) {
     const Leader::Counts& counts = leader_.counts();
     status.part += fmt::format("; {} questions answered, {} ticks sent again, {} states, {} nodes", counts.questions,
-                               counts.repaired_ticks, counts.states, leader_.fleet().nodes(now).size());
+                               counts.repaired_ticks, counts.states, leader_.fleet().size());
     status.nodes = leader_.fleet().attention(node_, now);
   } else {
     const Follower::Counts& counts = follower_.counts();

@@ -34,10 +34,11 @@ NatsSettings link_settings(const settings::LeadConfig& config, std::string name)
 /// thread; nothing here waits.
 class Company {
  public:
-  /// `state_bytes`: the size of the animation's state. `on_arrival`: called on another thread when take() has something
-  /// to do. The configuration is one that check_company() has accepted.
-  Company(const settings::Config& config, std::size_t state_bytes, animation::LedSteps& steps, Instant now,
-          std::function<void()> on_arrival, Follower::Listener listener);
+  /// `machine`: its name, if [wind] node is empty. `state_bytes`: the size of the animation's state. `on_arrival`:
+  /// called on another thread when take() has something to do. The configuration is one that check_company() has
+  /// accepted.
+  Company(const settings::Config& config, const std::string& machine, std::size_t state_bytes,
+          animation::LedSteps& steps, Instant now, std::function<void()> on_arrival, Follower::Listener listener);
 
   /// Takes what has come from the network.
   void take(MonoTime now);
@@ -75,7 +76,7 @@ class Company {
   void lead(const Instant& now);
   void keep_leading(const Instant& now);
   void leave_hanging_server(MonoTime now);
-  std::string trouble(MonoTime now) const;
+  std::string trouble(const NatsLink::State& link, MonoTime now) const;
   std::string part(MonoTime now) const;
 
   const settings::LeadConfig config_;

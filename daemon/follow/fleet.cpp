@@ -18,10 +18,6 @@ namespace {
 constexpr std::size_t kMaxAttention = 5, kMaxText_bytes = 300;
 constexpr std::size_t kNodesInMessage = 50;
 
-Failure bad_report(const char* clause) {
-  return {.message = clause, .kind = FailureKind::kBadData};
-}
-
 nlohmann::json json_of(const NodeReport& report) {
   nlohmann::json attention = nlohmann::json::array();
   for (std::size_t i = 0; i < std::min(report.attention.size(), kMaxAttention); ++i)
@@ -31,47 +27,30 @@ nlohmann::json json_of(const NodeReport& report) {
           {"behind_s", report.behind_s}, {"attention", std::move(attention)}};
 }
 
-std::optional<std::string> text_of(const nlohmann::json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_string()) return std::nullopt;
-  auto text = found->get<std::string>();
-  if (text.size() > kMaxText_bytes) return std::nullopt;
-  make_printable(text);
-  return text;
-}
-
-std::optional<double> number_of(const nlohmann::json& json, const char* key, double most) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_number()) return std::nullopt;
-  const auto number = found->get<double>();
-  if (!(std::abs(number) <= most)) return std::nullopt;
-  return number;
-}
-
 Result<NodeReport, Failure> report_of(const nlohmann::json& json) {
-  if (!json.is_object()) return bad_report("is no report of a node");
-  auto name = text_of(json, "node"), software = text_of(json, "software"), part = text_of(json, "part");
-  const auto wind_m_s = number_of(json, "wind_m_s", 1e3), from_deg = number_of(json, "wind_from_deg", 360.0);
-  const auto behind_s = number_of(json, "behind_s", 1e9);
-  const auto tick = json.find("tick"), attention = json.find("attention");
-  if (!name || name->empty() || !software || !part || !wind_m_s || !from_deg || !behind_s || tick == json.end() ||
-      !tick->is_number_unsigned() || attention == json.end() || !attention->is_array() ||
-      attention->size() > kMaxAttention) {
-    return bad_report("is a report with a key that is missing or has no such value");
+  if (!json.is_object()) return bad_data("is no report of a node");
+  auto name = text_at(json, "node", kMaxText_bytes), software = text_at(json, "software", kMaxText_bytes),
+       part = text_at(json, "part", kMaxText_bytes);
+  const auto wind_m_s = number_at(json, "wind_m_s", 1e3), from_deg = number_at(json, "wind_from_deg", 360.0);
+  const auto behind_s = number_at(json, "behind_s", 1e9);
+  const auto tick = count_at(json, "tick");
+  const auto attention = json.find("attention");
+  if (!name || name->empty() || !software || !part || !wind_m_s || !from_deg || !behind_s || !tick ||
+      attention == json.end() || !attention->is_array() || attention->size() > kMaxAttention) {
+    return bad_data("is a report with a key that is missing or has no such value");
   }
   NodeReport report{.name = std::move(*name),
                     .software = std::move(*software),
                     .part = std::move(*part),
                     .wind_m_s = *wind_m_s,
                     .wind_from_deg = *from_deg,
-                    .tick = tick->get<std::uint64_t>(),
+                    .tick = *tick,
                     .behind_s = *behind_s,
                     .attention = {}};
   for (const nlohmann::json& one : *attention) {
-    if (!one.is_string() || one.get_ref<const std::string&>().size() > kMaxText_bytes)
-      return bad_report("has an attention that is no short text");
-    report.attention.push_back(one.get<std::string>());
-    make_printable(report.attention.back());
+    auto text = short_text(one, kMaxText_bytes);
+    if (!text) return bad_data("has an attention that is no short text");
+    report.attention.push_back(std::move(*text));
   }
   return report;
 }
@@ -135,21 +114,20 @@ std::vector<std::uint8_t> list_bytes(const NodeList& list) {
 
 Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes) {
   const nlohmann::json json = small_json(bytes);
-  if (!json.is_object()) return bad_report("is no list of nodes");
-  const auto all = number_of(json, "all", Fleet::kMaxNodes), first = number_of(json, "first", Fleet::kMaxNodes);
+  if (!json.is_object()) return bad_data("is no list of nodes");
+  const auto all = number_at(json, "all", Fleet::kMaxNodes), first = number_at(json, "first", Fleet::kMaxNodes);
   const auto nodes = json.find("nodes");
   if (!all || *all < 0.0 || !first || *first < 0.0 || nodes == json.end() || !nodes->is_array() ||
       nodes->size() > kNodesInMessage) {
-    return bad_report("is no list of nodes");
+    return bad_data("is no list of nodes");
   }
   NodeList list{.all = static_cast<std::size_t>(*all), .first = static_cast<std::size_t>(*first), .nodes = {}};
   for (const nlohmann::json& one : *nodes) {
     auto report = report_of(one);
     if (!report) return report.error();
-    const auto last_word_s = number_of(one, "last_word_s", 1e9);
+    const auto last_word_s = number_at(one, "last_word_s", 1e9);
     const auto is_silent = one.find("silent");
-    if (!last_word_s || is_silent == one.end() || !is_silent->is_boolean())
-      return bad_report("has a node that is none");
+    if (!last_word_s || is_silent == one.end() || !is_silent->is_boolean()) return bad_data("has a node that is none");
     list.nodes.push_back(
         {.report = std::move(*report), .last_word_s = *last_word_s, .is_silent = is_silent->get<bool>()});
   }

@@ -47,6 +47,7 @@ class Fleet {
 
   void take(NodeReport report, MonoTime now);
 
+  std::size_t size() const noexcept { return heard_.size(); }
   /// In the order of their names.
   std::vector<Node> nodes(MonoTime now) const;
 

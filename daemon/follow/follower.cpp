@@ -32,19 +32,20 @@ Follower::Follower(PictureMakeup makeup, Nanoseconds delay, animation::LedSteps&
       period_(from_seconds(1.0 / makeup_.rate_hz)),
       silent_after_(std::max<Nanoseconds>(kSilentAfter, kSilentTicks * period_)) {}
 
-void Follower::refuse(const std::string& why) {
-  ++counts_.refused;
-  counts_.last_refusal = why;
+/// One that has come, or a part of it.
+void Follower::forget_state() {
+  arriving_.reset();
+  to_load_.reset();
 }
 
 void Follower::take_tick(std::span<const std::uint8_t> bytes, MonoTime now) {
   const auto tick = wire::lead::decode_wind_tick(bytes, now);
   if (!tick) {
     heard_unknown_ = now;
-    return refuse("a tick " + tick.error().message);
+    return refuse();
   }
   if (tick->epoch < play_out_.epoch()) {
-    if (!is_silent(now)) return refuse("a tick is of an epoch that is over");
+    if (!is_silent(now)) return refuse();
     other_ = {.epoch = tick->epoch, .since = now};
     return;
   }
@@ -55,7 +56,6 @@ void Follower::take_tick(std::span<const std::uint8_t> bytes, MonoTime now) {
       ++counts_.ticks;
       break;
     case PlayOut::Taken::kKnown:
-      ++counts_.known;
       break;
     case PlayOut::Taken::kNotOfIt:
       // After a long silence the numbers have gone on.
@@ -77,14 +77,13 @@ bool Follower::is_of_the_present(const wire::lead::WindTick& tick, MonoTime now)
 
 void Follower::take_reply(std::span<const std::uint8_t> bytes, MonoTime now) {
   const auto reply = decode_reply(bytes);
-  if (!reply) return refuse("a reply " + reply.error().message);
+  if (!reply) return refuse();
   std::visit([this, now](const auto& held) { take(held, now); }, *reply);
 }
 
 void Follower::take(const Introduction& introduction, MonoTime now) {
   const bool is_awaited = other_ && other_->epoch == introduction.epoch;
-  if (introduction.epoch < latest_epoch() && !(is_awaited && is_silent(now)))
-    return refuse("a leader is of an epoch that is over");
+  if (introduction.epoch < latest_epoch() && !(is_awaited && is_silent(now))) return refuse();
   other_.reset();
   leader_ = {};
   leaders_ = introduction.makeup;
@@ -95,14 +94,13 @@ void Follower::take(const Introduction& introduction, MonoTime now) {
   if (introduction.epoch == play_out_.epoch()) return;
   play_out_.begin(introduction.epoch);
   ticks_ = state_ = {};
-  arriving_.reset();
-  to_load_.reset();
+  forget_state();
 }
 
 void Follower::take(const Ticks& ticks, MonoTime now) {
   for (const Bytes& bytes : ticks.ticks) {
     const auto tick = wire::lead::decode_wind_tick(bytes, now);
-    if (!tick) return refuse("a tick that was asked for " + tick.error().message);
+    if (!tick) return refuse();
     if (is_in_wind_ && play_out_.take(*tick, now) == PlayOut::Taken::kNew) ++counts_.repaired;
   }
 }
@@ -128,7 +126,7 @@ void Follower::take(const StatePart& part, MonoTime now) {
     order->state.insert(order->state.end(), bytes.begin(), bytes.end());
   }
   arriving_.reset();
-  if (!is_whole) return refuse("the parts of a state overlap");
+  if (!is_whole) return refuse();
   to_load_ = std::move(order);
   load(now);
 }
@@ -150,7 +148,7 @@ void Follower::load(MonoTime now) {
 void Follower::play(MonoTime now) {
   while (const wire::lead::WindTick* tick = play_out_.next(now + kHandedEarly * period_)) {
     uses_own_wind_ = false;
-    for (std::size_t i = 0; i < tick->cue_count; ++i) listener_.cued(tick->cues[i]);
+    for (std::size_t i = 0; i < tick->cue_count; ++i) listener_.cued(animation::scene_cue_of(tick->cues[i]));
     if (!steps_.push(play_out_.due(tick->number), *tick, false)) return;
   }
 }
@@ -164,7 +162,6 @@ void Follower::ask_for_ticks(MonoTime now) {
   if (!ticks_.is_due(now)) return;
   for (const PlayOut::Gap& gap : play_out_.gaps(now)) {
     if (gap.to == 0) break;
-    ++counts_.gaps;
     ticks_.ask(now, kAskTicks, kAskTicks);
     ask_(
         encode(Question{.about = Question::About::kTicks, .epoch = play_out_.epoch(), .from = gap.from, .to = gap.to}));
@@ -218,8 +215,7 @@ void Follower::leave() {
   other_.reset();
   is_in_wind_ = false;
   uses_own_wind_ = true;
-  arriving_.reset();
-  to_load_.reset();
+  forget_state();
   is_loading_ = false;
   leaders_delay_s_.reset();
   leader_ = ticks_ = state_ = {};
@@ -228,8 +224,7 @@ void Follower::leave() {
 void Follower::set_makeup(PictureMakeup makeup) {
   makeup_ = std::move(makeup);
   leaders_.reset();
-  arriving_.reset();
-  to_load_.reset();
+  forget_state();
 }
 
 Follower::Phase Follower::phase(MonoTime now) const {

@@ -36,7 +36,7 @@ class Follower {
   /// What becomes of the scenes by another daemon's will.
   struct Listener {
     std::function<void(const std::vector<std::uint8_t>& shown)> loaded;  ///< a state: is each scene shown?
-    std::function<void(const wire::lead::TickCue& cue)> cued;
+    std::function<void(const animation::SceneCue& cue)> cued;
   };
 
   Follower(PictureMakeup makeup, Nanoseconds delay, animation::LedSteps& steps, Ask ask, Listener listener);
@@ -75,10 +75,9 @@ class Follower {
   std::optional<double> leaders_delay_s() const noexcept { return leaders_delay_s_; }
 
   struct Counts {
-    std::uint64_t ticks = 0, known = 0, refused = 0;  ///< taken; taken before; not of a leader or damaged
-    std::uint64_t gaps = 0, repaired = 0;             ///< asked for; ticks that came as a reply
-    std::uint64_t states = 0;                         ///< that were loaded
-    std::string last_refusal;
+    std::uint64_t ticks = 0, refused = 0;  ///< taken; what is not of a leader, or damaged
+    std::uint64_t repaired = 0;            ///< asked for; ticks that came as a reply
+    std::uint64_t states = 0;              ///< that were loaded
   };
   const Counts& counts() const noexcept { return counts_; }
 
@@ -102,7 +101,8 @@ class Follower {
   void ask_for_ticks(MonoTime now);
   void ask_for_state(MonoTime now);
   void load(MonoTime now);
-  void refuse(const std::string& why);
+  void refuse() noexcept { ++counts_.refused; }
+  void forget_state();
   bool has_same_scenes() const noexcept { return is_in_wind_ && differences_.empty(); }
 
   PictureMakeup makeup_;

@@ -128,7 +128,7 @@ void Leader::advance(MonoTime now) {
     const auto saved = steps_.take_finished();
     if (!saved) return;
     is_saving_ = false;
-    if (saved->is_done && saving_epoch_ == epoch_) {
+    if (saved->is_done) {
       queue_state(*saved);
       waiting_.clear();
     }
@@ -139,7 +139,6 @@ void Leader::advance(MonoTime now) {
   if (!steps_.order(order)) return;
   saved_ = now;
   is_saving_ = true;
-  saving_epoch_ = epoch_;
 }
 
 void Leader::queue_state(const animation::StateOrder& saved) {

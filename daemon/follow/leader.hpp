@@ -96,7 +96,6 @@ class Leader {
   /// The parts of a state: one a tick, so that it delays no tick.
   std::deque<std::pair<std::string, Bytes>> parts_;
   Fleet fleet_;
-  std::uint64_t saving_epoch_ = 0;
   Counts counts_;
 };
 

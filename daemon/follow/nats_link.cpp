@@ -15,7 +15,6 @@
 #include <memory>
 #include <mutex>
 #include <random>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -31,6 +30,7 @@
 #include <sys/socket.h>
 
 #include "daemon/follow/nkey.hpp"
+#include "daemon/settings/secret_exposure.hpp"
 #include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/printable_text.hpp"
@@ -296,9 +296,7 @@ class Connection {
   }
 
   void set_credentials(const std::filesystem::path& file) {
-    std::error_code error;
-    const auto mode = std::filesystem::status(file, error).permissions();
-    if (!error && (mode & std::filesystem::perms::others_read) != std::filesystem::perms::none) {
+    if (settings::is_read_by_everybody(file)) {
       throw FailureError(Failure{fmt::format("everybody on this machine can read {0}: chmod 640 {0}", file.string())});
     }
     seed_ = platform::secret_in_file(file).value();

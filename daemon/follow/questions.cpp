@@ -1,15 +1,11 @@
 #include "daemon/follow/questions.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/follow/small_json.hpp"
-#include "engine/base/printable_text.hpp"
 #include "engine/base/snapshot.hpp"
 #include "engine/wire/lead/wind_tick.hpp"
 #include "engine/wire/wire.hpp"
@@ -26,42 +22,16 @@ constexpr std::size_t kMaxName_bytes = 200;
 constexpr std::uint64_t kPartMark = 0x7374'6174'6570'6172;
 constexpr std::size_t kLength_bytes = 2;
 
-Failure bad(const char* clause) {
-  return {.message = clause, .kind = FailureKind::kBadData};
-}
-
-std::optional<std::uint64_t> number_of(const nlohmann::json& object, const char* key) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number_unsigned()) return std::nullopt;
-  return found->get<std::uint64_t>();
-}
-
-std::optional<double> real_of(const nlohmann::json& object, const char* key, double most) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number()) return std::nullopt;
-  const auto value = found->get<double>();
-  if (!(value > 0.0 && value <= most)) return std::nullopt;
-  return value;
-}
-
-std::optional<std::string> name_of(const nlohmann::json& json) {
-  if (!json.is_string()) return std::nullopt;
-  auto name = json.get<std::string>();
-  if (name.size() > kMaxName_bytes) return std::nullopt;
-  make_printable(name);
-  return name;
-}
-
 Result<Reply, Failure> decode_introduction(std::span<const std::uint8_t> bytes) {
   const nlohmann::json object = small_json(bytes);
-  if (!object.is_object()) return bad("is no introduction of a leader");
-  const auto epoch = number_of(object, "epoch"), motion = number_of(object, "motion"), wind = number_of(object, "wind");
-  const auto delay_s = real_of(object, "delay", 60.0), rate_hz = real_of(object, "rate", 1000.0);
-  const auto software = name_of(object.value("software", nlohmann::json()));
+  if (!object.is_object()) return bad_data("is no introduction of a leader");
+  const auto epoch = count_at(object, "epoch"), motion = count_at(object, "motion"), wind = count_at(object, "wind");
+  const auto delay_s = number_at(object, "delay", 60.0), rate_hz = number_at(object, "rate", 1000.0);
+  const auto software = text_at(object, "software", kMaxName_bytes);
   const auto scenes = object.find("scenes");
-  if (!epoch || !motion || *motion > ~0U || !wind || !delay_s || !rate_hz || !software || scenes == object.end() ||
-      !scenes->is_array() || scenes->size() > wire::kMaxScenes) {
-    return bad("is an introduction of a leader with a key that is missing or has no such value");
+  if (!epoch || !motion || *motion > ~0U || !wind || !delay_s || *delay_s <= 0.0 || !rate_hz || *rate_hz <= 0.0 ||
+      !software || scenes == object.end() || !scenes->is_array() || scenes->size() > wire::kMaxScenes) {
+    return bad_data("is an introduction of a leader with a key that is missing or has no such value");
   }
   Introduction introduction{.epoch = *epoch,
                             .delay_s = *delay_s,
@@ -72,9 +42,9 @@ Result<Reply, Failure> decode_introduction(std::span<const std::uint8_t> bytes) 
                                        .scenes = {}}};
   for (const nlohmann::json& scene : *scenes) {
     if (!scene.is_array() || scene.size() != 2 || !scene[1].is_number_unsigned())
-      return bad("has a scene that is none");
-    auto name = name_of(scene[0]);
-    if (!name) return bad("has a scene without a name");
+      return bad_data("has a scene that is none");
+    auto name = short_text(scene[0], kMaxName_bytes);
+    if (!name) return bad_data("has a scene without a name");
     introduction.makeup.scenes.emplace_back(std::move(*name), scene[1].get<std::uint64_t>());
   }
   return Reply(std::move(introduction));
@@ -83,10 +53,11 @@ Result<Reply, Failure> decode_introduction(std::span<const std::uint8_t> bytes) 
 Result<Reply, Failure> decode_ticks(std::span<const std::uint8_t> bytes) {
   Ticks ticks;
   while (!bytes.empty()) {
-    if (bytes.size() < kLength_bytes) return bad("ends within a tick");
+    if (bytes.size() < kLength_bytes) return bad_data("ends within a tick");
     const std::size_t size = bytes[0] + (std::size_t{bytes[1]} << 8U);
     bytes = bytes.subspan(kLength_bytes);
-    if (size == 0 || size > wire::lead::kMaxWindTick_bytes || size > bytes.size()) return bad("ends within a tick");
+    if (size == 0 || size > wire::lead::kMaxWindTick_bytes || size > bytes.size())
+      return bad_data("ends within a tick");
     ticks.ticks.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     bytes = bytes.subspan(size);
   }
@@ -102,13 +73,13 @@ constexpr std::size_t kPartHead_bytes = 5 * sizeof(std::uint64_t);
 Result<Reply, Failure> decode_part(std::span<const std::uint8_t> bytes) {
   const auto opened = opened_snapshot(bytes, kPartMark);
   if (!opened) return opened.error();
-  if (opened->size() <= kPartHead_bytes) return bad("is too short for a part of a state");
+  if (opened->size() <= kPartHead_bytes) return bad_data("is too short for a part of a state");
   PartHead head;
   StatePass::loading(opened->first(kPartHead_bytes))(head);
   const auto part = opened->subspan(kPartHead_bytes);
   if (head.total_bytes > kMaxState_bytes || head.first_byte > head.total_bytes ||
       part.size() > head.total_bytes - head.first_byte) {
-    return bad("is a part that exceeds its state");
+    return bad_data("is a part that exceeds its state");
   }
   return Reply(StatePart{.epoch = head.epoch,
                          .number = head.number,
@@ -185,22 +156,22 @@ Bytes encode(const StatePart& part) {
 
 Result<Question, Failure> decode_question(std::span<const std::uint8_t> bytes) {
   const nlohmann::json object = small_json(bytes);
-  if (!object.is_object()) return bad("is no question");
+  if (!object.is_object()) return bad_data("is no question");
   const auto ask = object.find("ask");
-  if (ask == object.end() || !ask->is_string()) return bad("asks for nothing");
+  if (ask == object.end() || !ask->is_string()) return bad_data("asks for nothing");
   const auto& word = ask->get_ref<const std::string&>();
   if (word == kLeader) return Question{};
   if (word == kFleet) return Question{.about = Question::About::kFleet};
-  const auto epoch = number_of(object, "epoch");
-  if (!epoch) return bad("asks without an epoch");
+  const auto epoch = count_at(object, "epoch");
+  if (!epoch) return bad_data("asks without an epoch");
   if (word == kState) return Question{.about = Question::About::kState, .epoch = *epoch};
-  const auto from = number_of(object, "from"), to = number_of(object, "to");
-  if (word != kTicks || !from || !to || *from > *to) return bad("asks for what is not known");
+  const auto from = count_at(object, "from"), to = count_at(object, "to");
+  if (word != kTicks || !from || !to || *from > *to) return bad_data("asks for what is not known");
   return Question{.about = Question::About::kTicks, .epoch = *epoch, .from = *from, .to = *to};
 }
 
 Result<Reply, Failure> decode_reply(std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return bad("is empty");
+  if (bytes.empty()) return bad_data("is empty");
   const auto rest = bytes.subspan(1);
   switch (static_cast<Kind>(bytes[0])) {
     case Kind::kIntroduction:
@@ -211,9 +182,9 @@ Result<Reply, Failure> decode_reply(std::span<const std::uint8_t> bytes) {
       return decode_part(rest);
     case Kind::kNodes:
       if (auto list = decode_node_list(rest)) return Reply(std::move(*list));
-      return bad("is no list of nodes");
+      return bad_data("is no list of nodes");
   }
-  return bad("is of no known kind");
+  return bad_data("is of no known kind");
 }
 
 }  // namespace yuragi::daemon::follow

@@ -113,17 +113,15 @@ wire::FeedStatus to_wire(const feeds::Status& feed, MonoTime now) {
   return status;
 }
 
-wire::FeedStatus to_wire(const follow::Company::Status& company, MonoTime now) {
-  wire::FeedStatus status{.kind = "nats",
-                          .name = company.channel,
-                          .target = company.server,
-                          .sends = company.part,
-                          .messages = company.messages,
-                          .bytes = company.bytes,
-                          .last_sent_age_s = {},
-                          .trouble = company.trouble};
-  if (company.last) status.last_sent_age_s = std::max(0.0, seconds(now - *company.last));
-  return status;
+feeds::Status as_feed(const follow::Company::Status& company) {
+  return {.kind = "nats",
+          .name = company.channel,
+          .target = company.server,
+          .sends = company.part,
+          .messages = company.messages,
+          .bytes = company.bytes,
+          .last_sent = company.last,
+          .trouble = company.trouble};
 }
 
 std::vector<look::Camera> cameras_of(const settings::Config& config) {
@@ -368,20 +366,19 @@ class Service::Io {
     std::vector<std::uint8_t> state;
     animation_->save_state(state, started_.mono);
     company_.emplace(
-        config, state.size(), *led_, started_, [this] { asio::post(io_, [this] { take_from_company(); }); },
-        follow::Follower::Listener{
-            .loaded =
-                [this](const std::vector<std::uint8_t>& shown) {
-                  loaded_at_ = clock_.now().mono;
-                  director_.note_shown(shown);
-                  parameters_.note_change();
-                },
-            .cued =
-                [this](const wire::lead::TickCue& cue) {
-                  director_.note(
-                      {.scene = cue.scene, .shown = cue.shown, .hide_others = cue.hide_others, .over_s = cue.over_s});
-                  parameters_.note_change();
-                }});
+        config, asio::ip::host_name(), state.size(), *led_, started_,
+        [this] { asio::post(io_, [this] { take_from_company(); }); },
+        follow::Follower::Listener{.loaded =
+                                       [this](const std::vector<std::uint8_t>& shown) {
+                                         loaded_at_ = clock_.now().mono;
+                                         director_.note_shown(shown);
+                                         parameters_.note_change();
+                                       },
+                                   .cued =
+                                       [this](const animation::SceneCue& cue) {
+                                         director_.note(cue);
+                                         parameters_.note_change();
+                                       }});
   }
 
   void report_to_company(const wire::Sensors& status) {
@@ -819,7 +816,7 @@ class Service::Io {
     for (const feeds::Status& feed : feeds_->status()) status.feeds.push_back(to_wire(feed, now));
     if (company_) {
       const follow::Company::Status company = company_->status(now);
-      status.feeds.push_back(to_wire(company, now));
+      status.feeds.push_back(to_wire(as_feed(company), now));
       status.troubles.insert(status.troubles.end(), company.nodes.begin(), company.nodes.end());
     }
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));

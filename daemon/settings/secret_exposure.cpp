@@ -8,15 +8,12 @@
 #include "daemon/settings/each_value.hpp"
 
 namespace yuragi::daemon::settings {
-namespace {
 
 bool is_read_by_everybody(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   return !error && (status.permissions() & std::filesystem::perms::others_read) != std::filesystem::perms::none;
 }
-
-}  // namespace
 
 std::vector<std::string> exposed_secrets(const Config& config, const std::filesystem::path& file) {
   std::vector<std::string> warnings;

@@ -152,7 +152,7 @@ class FollowerTest : public ::testing::Test {
                        });
                      },
                      {.loaded = [this](const auto& shown) { shown_ = shown; },
-                      .cued = [this](const wire::lead::TickCue& cue) { shown_.at(cue.scene) = cue.shown ? 1 : 0; }}};
+                      .cued = [this](const animation::SceneCue& cue) { shown_.at(cue.scene) = cue.shown ? 1 : 0; }}};
   Leader leader_{makeup_of(config_),
                  kRate_hz,
                  kDelay,
