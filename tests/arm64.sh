@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests what is built for arm64, in an emulator: the golden hashes, the pure tests (the engine's, and those of the drivers'
-# decoders), and that a replay's poses have the hash that they have on this machine. Tests that talk to other programs are left
-# out: what they start would not run. The last line shows how many tests passed and failed.
+# decoders), that a replay's poses have the hash that they have on this machine, and that a follower has its leader's poses. Tests
+# that talk to other programs are left out: what they start would not run. The last line shows how many tests passed and failed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source tests/support/stages.sh
@@ -20,7 +20,7 @@ on_arm64=(qemu-aarch64-static -L "$PWD/build/arm64-sysroot")
 
 build() {
   check "making the tree of libraries for arm64" config/arm64_sysroot.sh || return
-  check "configuring arm64" cmake --preset arm64 --log-level=WARNING || return
+  check "configuring arm64" cmake --preset arm64 -D YURAGI_NATS=ON --log-level=WARNING || return
   check "building arm64" cmake --build build/arm64 --target "${tests[@]##*/}" yuragi || return
   # The recording is made, and replayed for comparison, by this machine's own programs.
   check "configuring test" cmake --preset test --log-level=WARNING || return
@@ -59,11 +59,17 @@ replay() {
   check "a replay gave no hash" [ -n "$here" ] && check "a replay's poses differ on arm64" [ "$here" = "$there" ] && add 1 0
 }
 
+follower() {
+  check "a follower on arm64" /usr/bin/python3 tests/fleet/arm64_follower.py build/test/bin "${on_arm64[@]}" build/arm64/bin/yuragi \
+    && add 1 0
+}
+
 config/setup.sh --test
 if stage build build && [ "$failed" -eq 0 ]; then
   for test in "${tests[@]}"; do
     stage "${test##*/}" run_program "$test"
   done
   stage replay replay
+  stage follower follower
 fi
 finish

@@ -63,6 +63,7 @@ std::vector<follow::Node> ask_leader(const settings::LeadConfig& config) {
       for (std::size_t i = 0; i < list->nodes.size(); ++i) nodes[list->first + i] = list->nodes[i];
       if (nodes.size() < list->all) continue;
       std::vector<follow::Node> all;
+      all.reserve(nodes.size());
       for (auto& [place, node] : nodes) all.push_back(std::move(node));
       return all;
     }
@@ -90,24 +91,6 @@ std::string table_of(const std::vector<follow::Node>& nodes) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const std::vector<follow::Node>& nodes) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const follow::Node& node : nodes) {
-    const follow::NodeReport& report = node.report;
-    all.push_back({{"node", report.name},
-                   {"is_silent", node.is_silent},
-                   {"last_word_s", node.last_word_s},
-                   {"software", report.software},
-                   {"part", report.part},
-                   {"wind_m_s", report.wind_m_s},
-                   {"wind_from_deg", report.wind_from_deg},
-                   {"tick", report.tick},
-                   {"behind_s", report.behind_s},
-                   {"attention", report.attention}});
-  }
-  return {{"nodes", std::move(all)}};
-}
-
 void show_fleet(const FleetOptions& options) {
   const settings::Config config = settings::load_config(options.config_file);
   if (!config.wind.lead.is_in_company())
@@ -115,7 +98,7 @@ void show_fleet(const FleetOptions& options) {
   follow::check_company(config);
   const std::vector<follow::Node> nodes = ask_leader(config.wind.lead);
   if (options.as_json) {
-    print_json(json_of(nodes));
+    print_json(follow::nodes_json(nodes));
   } else {
     settings::write_at_once(table_of(nodes));
   }

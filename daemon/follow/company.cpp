@@ -216,12 +216,14 @@ Company::Status Company::status(MonoTime now) const {
                 .trouble = trouble(link, now),
                 .messages = link.sent + link.received,
                 .bytes = link.sent_bytes + link.received_bytes,
+                .fleet = {},
                 .nodes = {},
                 .last = heard_};
   if (leads_) {
     const Leader::Counts& counts = leader_.counts();
     status.part += fmt::format("; {} questions answered, {} ticks sent again, {} states, {} nodes", counts.questions,
                                counts.repaired_ticks, counts.states, leader_.fleet().size());
+    status.fleet = leader_.fleet().nodes(now);
     status.nodes = leader_.fleet().attention(node_, now);
   } else {
     const Follower::Counts& counts = follower_.counts();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/animation/led_steps.hpp"
+#include "daemon/follow/fleet.hpp"
 #include "daemon/follow/follower.hpp"
 #include "daemon/follow/leader.hpp"
 #include "daemon/follow/nats_link.hpp"
@@ -65,7 +66,8 @@ class Company {
     std::string part;     ///< "leads", "the same picture as its leader", ...
     std::string trouble;  ///< what is wrong, and what to do; empty: nothing
     std::uint64_t messages = 0, bytes = 0;
-    std::vector<std::string> nodes;  ///< what needs attention at other nodes, if this one leads
+    std::vector<Node> fleet;         ///< all nodes that were heard, if this one leads
+    std::vector<std::string> nodes;  ///< what needs attention at the others
     std::optional<MonoTime> last;    ///< when a tick was sent or heard last
   };
   Status status(MonoTime now) const;

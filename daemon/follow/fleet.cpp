@@ -10,6 +10,7 @@
 
 #include "daemon/follow/small_json.hpp"
 #include "daemon/settings/duration_text.hpp"
+#include "engine/base/json_text.hpp"
 #include "engine/base/printable_text.hpp"
 
 namespace yuragi::daemon::follow {
@@ -132,6 +133,28 @@ Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes) 
         {.report = std::move(*report), .last_word_s = *last_word_s, .is_silent = is_silent->get<bool>()});
   }
   return list;
+}
+
+nlohmann::ordered_json nodes_json(const std::vector<Node>& nodes) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Node& node : nodes) {
+    const NodeReport& report = node.report;
+    all.push_back({{"node", report.name},
+                   {"is_silent", node.is_silent},
+                   {"last_word_s", node.last_word_s},
+                   {"software", report.software},
+                   {"part", report.part},
+                   {"wind_m_s", report.wind_m_s},
+                   {"wind_from_deg", report.wind_from_deg},
+                   {"tick", report.tick},
+                   {"behind_s", report.behind_s},
+                   {"attention", report.attention}});
+  }
+  return {{"nodes", std::move(all)}};
+}
+
+std::string nodes_text(const std::vector<Node>& nodes) {
+  return json_text(nodes_json(nodes), 2) + "\n";
 }
 
 std::vector<NodeList> parts_of(const std::vector<Node>& nodes) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 
@@ -68,6 +70,11 @@ std::vector<std::uint8_t> encode(const NodeReport& report);
 Result<NodeReport, Failure> decode_node_report(std::span<const std::uint8_t> bytes);
 std::vector<std::uint8_t> list_bytes(const NodeList& list);
 Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes);
+
+/// For people's programs: {"nodes": [{"node", "is_silent", "last_word_s", "software", "part", "wind_m_s",
+/// "wind_from_deg", "tick", "behind_s", "attention"}]}.
+nlohmann::ordered_json nodes_json(const std::vector<Node>& nodes);
+std::string nodes_text(const std::vector<Node>& nodes);
 
 /// The list in messages of some nodes each; one without nodes if there are none.
 std::vector<NodeList> parts_of(const std::vector<Node>& nodes);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/host_name.hpp>
@@ -386,6 +388,8 @@ class Service::Io {
     const MonoTime now = clock_.now().mono;
     if (now < next_report_) return;
     next_report_ = now + kReportInterval;
+    wire::Sensors told = status;
+    folders_.remove_from(told);
     company_->report({.name = {},
                       .software = {},
                       .part = {},
@@ -393,7 +397,7 @@ class Service::Io {
                       .wind_from_deg = wind::direction_from_deg(status.wind.wind),
                       .tick = 0,
                       .behind_s = 0.0,
-                      .attention = state::needs_attention(status)},
+                      .attention = state::needs_attention(told)},
                      now);
   }
 
@@ -818,6 +822,9 @@ class Service::Io {
     if (company_) {
       const follow::Company::Status company = company_->status(now);
       status.feeds.push_back(to_wire(as_feed(company), now));
+      if (web_)
+        web_->publish_fleet(company_->leads() ? std::make_shared<const std::string>(follow::nodes_text(company.fleet))
+                                              : nullptr);
       status.troubles.insert(status.troubles.end(), company.nodes.begin(), company.nodes.end());
     }
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));

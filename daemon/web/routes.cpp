@@ -195,6 +195,12 @@ Answer revoke_session(const http::Request& request, const Facts& /*facts*/) {
   return std::move(*revocation);
 }
 
+Answer fleet(const http::Request& /*request*/, const Facts& facts) {
+  if (const auto why = silence_of(facts)) return no_news(*why);
+  if (facts.fleet == nullptr) return json_response({{"nodes", ordered_json::array()}});
+  return http::Response{.body = *facts.fleet};
+}
+
 Answer recent_wind(const http::Request& /*request*/, const Facts& facts) {
   ordered_json age_s = ordered_json::array();
   ordered_json measured_m_s = ordered_json::array();
@@ -304,6 +310,7 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/blackout", blackout},
     Route{"POST", "/api/v1/camera", camera},
     Route{"POST", "/api/v1/reload", reload},
+    Route{"GET", "/api/v1/fleet", fleet},
     Route{"GET", "/api/v1/wind", recent_wind},
     Route{"GET", "/api/v1/history", history},
     Route{"GET", "/api/v1/log", log, true},

@@ -31,6 +31,7 @@ struct Facts {
   FaultCounter faults = {};
   Counts counts = {};
   const Pairings* pairings = nullptr;  ///< null: no browser is paired
+  const std::string* fleet = nullptr;  ///< JSON of the nodes in one wind; null: this daemon does not lead
   const WindMemory* wind = nullptr;    ///< null: nothing is known of the last minutes
   double mono_s = 0.0;                 ///< now, of the memory's clock
   double utc_s = 0.0;                  ///< now

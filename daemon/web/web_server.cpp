@@ -183,6 +183,10 @@ class Server::Thread {
     });
   }
 
+  void publish_fleet(std::shared_ptr<const std::string> nodes) {
+    asio::post(*io_, [this, nodes = std::move(nodes)]() mutable { fleet_ = std::move(nodes); });
+  }
+
   void set_token(const Secret& token) {
     asio::post(*io_, [this, token] { trust(token); });
   }
@@ -330,6 +334,7 @@ class Server::Thread {
             .faults = settings_.faults,
             .counts = counts_,
             .pairings = &pairings_,
+            .fleet = fleet_.get(),
             .wind = &wind_,
             .mono_s = mono_s(),
             .utc_s = utc_s};
@@ -455,7 +460,7 @@ class Server::Thread {
     return wait_for_reply(std::move(reply), std::move(otherwise), settings_.patience);
   }
   std::shared_ptr<Pending> wait_for_reply(http::Reply reply, http::Response otherwise, Nanoseconds patience) {
-    const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
+    auto pending = std::make_shared<Pending>(*io_, std::move(reply));
     pending->given_up.expires_after(patience);
     pending->given_up.async_wait([pending, otherwise = std::move(otherwise)](const boost::system::error_code& error) {
       if (!error) pending->answer(otherwise);
@@ -476,6 +481,7 @@ class Server::Thread {
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
   asio::steady_timer certificate_timer_{*io_};
   std::optional<News> here_, elsewhere_;
+  std::shared_ptr<const std::string> fleet_;  ///< null: this daemon does not lead
   WindMemory wind_;
   std::mutex newest_mutex_;
   Newest newest_;         ///< of newest_mutex_
@@ -516,6 +522,9 @@ void Server::publish_moment(std::shared_ptr<const values::Moment> moment) {
 }
 void Server::publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) {
   thread_->publish_sensors(std::move(here), std::move(elsewhere));
+}
+void Server::publish_fleet(std::shared_ptr<const std::string> nodes) {
+  thread_->publish_fleet(std::move(nodes));
 }
 std::size_t Server::client_count() const {
   return thread_->client_count();

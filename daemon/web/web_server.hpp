@@ -89,6 +89,8 @@ class Server final : public stream::Transport {
   /// The values of a tick of the wind. Does nothing while no WebSocket wants them.
   void publish_moment(std::shared_ptr<const values::Moment> moment);
   void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) override;
+  /// The nodes in one wind, as JSON for /api/v1/fleet; null: this daemon does not lead.
+  void publish_fleet(std::shared_ptr<const std::string> nodes);
   std::size_t client_count() const override;
   /// Clients on other machines get less, and can ask at any time.
   bool has_untrusted_clients() const override;

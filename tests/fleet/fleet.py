@@ -127,9 +127,10 @@ class Stream:
 
 class Daemon(Program):
     """`lead`, `follow`: addresses of servers, separated by commas. `wind`: further lines of [wind]. `scenes`: as SCENES has them.
-    Its `stream` is read from the start."""
+    Its `stream` is read from the start, if it is watched: each frame is hashed here, which costs more than the daemon itself. `program`: the
+    words of another build of it."""
 
-    def __init__(self, test, name, lead="", follow="", wind="", scenes=FEW, seed=SEED, speed_m_s=5.0):
+    def __init__(self, test, name, lead="", follow="", wind="", scenes=FEW, seed=SEED, speed_m_s=5.0, is_watched=True, program=None):
         self.test, self.name = test, name
         if not isinstance(scenes, dict):
             scenes = {scene: SCENES[scene] for scene in scenes}
@@ -141,11 +142,11 @@ class Daemon(Program):
                        f'[wind]\nlead = "{lead}"\nfollow = "{follow}"\ndefault_speed = {speed_m_s}\n{wind}\n')
             for place, (scene, values) in enumerate(scenes.items()):
                 file.write(f'[[scene]]\nname = "{scene}"\n{values}\nx = {5 * place}\n')
-        super().__init__(os.path.join(test.programs, "yuragi"), "run", "--config", self.file, "--listen", "127.0.0.1:0",
+        super().__init__(*(program or [os.path.join(test.programs, "yuragi")]), "run", "--config", self.file, "--listen", "127.0.0.1:0",
                          env={**os.environ, "STATE_DIRECTORY": folder})
         test.daemons.append(self)
         test.enterContext(self)
-        self.stream = Stream(self)
+        self.stream = Stream(self) if is_watched else None
 
     def feed(self):
         """What its status has of NATS: {"sends", "trouble", ...}."""
@@ -153,11 +154,23 @@ class Daemon(Program):
                                 stdout=subprocess.PIPE, check=False).stdout
         return next(feed for feed in json.loads(status)["feeds"] if feed["kind"] == "nats")
 
+    def doctor(self):
+        """What `yuragi doctor` finds for its configuration."""
+        return subprocess.run([os.path.join(self.test.programs, "yuragi"), "doctor", "--config", self.file, "--connect", self.address()],
+                              timeout=HANG_S, stdout=subprocess.PIPE, text=True, check=False).stdout
+
     def wait_for_feed(self, key, pattern):
         """Waits until this part of its status matches."""
         def find():
             return re.search(pattern, str(self.feed()[key]))
-        return self.stream.wait_until(find, f"{pattern!r} in its status", every=RATE_HZ // 3)
+        if self.stream:
+            return self.stream.wait_until(find, f"{pattern!r} in its status", every=RATE_HZ // 3)
+        end_s = time.monotonic() + HANG_S
+        while not (found := find()):
+            if time.monotonic() > end_s:
+                self.test.fail(f"{self.name}: {pattern!r} in its status: not within {HANG_S:g} s\n" + self.test.logs())
+            time.sleep(0.3)
+        return found
 
     def counts(self):
         """(ticks, repaired, without a tick, states) of a follower."""
@@ -183,12 +196,12 @@ class FleetTest(unittest.TestCase):
         texts = []
         for daemon in self.daemons:
             text = daemon.text()
-            if daemon.process.poll() is None and not daemon.stream.is_over:
+            if daemon.process.poll() is None and not (daemon.stream and daemon.stream.is_over):
                 try:
                     text += f"{daemon.feed()}\n"
                 except (ValueError, StopIteration, subprocess.SubprocessError) as error:
                     text += f"{error!r}\n"
-            if daemon.stream.frames:
+            if daemon.stream and daemon.stream.frames:
                 text += f"frames: {len(daemon.stream.frames)}, the last tick: {daemon.stream.frames[-1].tick}\n"
             texts.append(f"---- {daemon.name}\n{text}")
         texts += [f"---- {server.name}\n{server.program.text()}" for server in self.servers]

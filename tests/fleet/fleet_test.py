@@ -9,16 +9,18 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import struct
 import subprocess
 import sys
 import time
 import unittest
+import urllib.request
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "e2e"))
 import fleet  # noqa: E402
-from programs import HANG_S  # noqa: E402
+from programs import HANG_S, Program, free_port  # noqa: E402
 from fleet import RATE_HZ, Daemon, add_row  # noqa: E402
 from nats import Client, Cluster, LossyNetwork, Server  # noqa: E402
 
@@ -26,25 +28,29 @@ fleet.FleetTest.programs = os.path.abspath(sys.argv.pop(1))
 tearDownModule = fleet.print_table
 MAX_HALT = RATE_HZ  # periods without a frame: a daemon that waits for its leader has none for longer
 MAX_STEP = 8.0  # relative to the usual largest one, 1 to 5 measured: without a fade it is 12 to 26
+HERE = os.path.dirname(os.path.abspath(__file__))
+PROJECT = os.path.join(HERE, "..", "..")
+CHROMIUM, BROWSER_TOOLS = "/usr/bin/chromium", os.path.join(PROJECT, "build", "browser")
 PASSWORDS = {"leader": "change-this", "follower": "change-this-too"}
-with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "config", "nats", "leader-and-followers.conf"),
-          encoding="utf-8") as written:
+with open(os.path.join(PROJECT, "config", "nats", "leader-and-followers.conf"), encoding="utf-8") as written:
     PERMISSIONS = written.read()
 LOGINS = {user: f"{user}:{password}" for user, password in PASSWORDS.items()}
 
 
 class Fleet(fleet.FleetTest):
-    def test_followers_that_join_late_have_the_leaders_poses(self):
+    def test_ten_followers_that_join_late_have_the_leaders_poses(self):
         server = Server(self, "server")
         leader = Daemon(self, "leader", lead=server.address, scenes=fleet.SCENES)
         leader.stream.wait_for_frames(3 * RATE_HZ)
         began_s = time.monotonic()
-        followers = [Daemon(self, f"follower-{i}", follow=server.address, scenes=fleet.SCENES, speed_m_s=2.0) for i in range(3)]
-        for follower in followers:
+        all_of_them = [Daemon(self, f"follower-{i}", follow=server.address, scenes=fleet.SCENES, speed_m_s=2.0, is_watched=i < 3) for i in range(10)]
+        for follower in all_of_them[:3]:
             took_s = self.wait_until_equal(leader, follower, began_s, ticks=3 * RATE_HZ)
             common, equal = self.share_equal(leader, follower, began_s + took_s)
-            add_row(f"late join, {follower.name}", equal=f"{equal} of {common}", seconds=took_s)
+            add_row(f"late join of ten, {follower.name}", equal=f"{equal} of {common}", seconds=took_s)
+        for follower in all_of_them:
             follower.wait_for_feed("sends", "the same picture as its leader")
+            self.assertLess(follower.counts()[3], 4, "states that one follower took")
 
     def test_lost_ticks_are_had_again(self):
         server = Server(self, "server")
@@ -268,6 +274,35 @@ class Fleet(fleet.FleetTest):
         with open(path, "w", encoding="utf-8", opener=lambda name, flags: os.open(name, flags, 0o600)) as file:
             file.write((text or LOGINS[user]) + "\n")
         return f'credentials = "{path}"'
+
+    def test_the_doctor_names_a_server_that_does_not_reply_and_a_leader_that_is_not_heard(self):
+        server = Server(self, "server", PERMISSIONS)
+        closed = free_port()
+        follower = Daemon(self, "follower", follow=f"{server.address}, nats://127.0.0.1:{closed}", wind=self.credentials("follower"))
+        self.assertRegex(follower.doctor(), rf"(?s)warning +company +{server.address}: no leader is heard on the channel wind.*"
+                                            rf"error +company +nats://127.0.0.1:{closed}: .*systemctl status nats-server")
+        Daemon(self, "leader", lead=server.address, wind=self.credentials("leader")).stream.wait_for_frames(RATE_HZ)
+        self.assertRegex(follower.doctor(), rf"ok +company +{server.address}: a leader is heard on the channel wind")
+        wrong = Daemon(self, "wrong-password", follow=server.address, wind=self.credentials("follower", "follower:wrong"))
+        self.assertRegex(wrong.doctor(), rf"error +company +{server.address}: .*does not accept this user")
+
+    def test_the_leaders_page_shows_each_wall_and_which_one_is_silent(self):
+        missing = [path for path in (CHROMIUM, os.path.join(BROWSER_TOOLS, "node_modules")) if not os.path.exists(path)]
+        if missing or not shutil.which("node"):
+            self.skipTest(f"not there: {missing or 'node'} (config/setup.sh --test installs it)")
+        server = Server(self, "server")
+        leader = Daemon(self, "leader", lead=server.address, wind='node = "roof"\n[http]\nlisten = "127.0.0.1:0"')
+        follower = Daemon(self, "follower", follow=server.address, wind='node = "foyer"')
+        url = leader.wait_for(r"answering at (http://\S+)").group(1)
+        self.wait_until_equal(leader, follower)
+        screenshots = os.path.join(fleet.FleetTest.programs, "..", "tests", "fleet")
+        browser = self.enterContext(Program("node", os.path.join(HERE, "fleet_page.mjs"), CHROMIUM, BROWSER_TOOLS, screenshots, url))
+        browser.wait_for("both are there")
+        follower.end(signal.SIGKILL)
+        browser.wait_for("seen")
+        with urllib.request.urlopen(url + "/api/v1/fleet", timeout=HANG_S) as answer:
+            nodes = json.load(answer)["nodes"]
+        self.assertEqual([(node["node"], node["is_silent"]) for node in nodes], [("foyer", True), ("roof", False)])
 
     def test_by_tls(self):
         certificate, key = (os.path.join(self.folder, name) for name in ("certificate.pem", "key.pem"))

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "daemon/settings/secret_exposure.hpp"
+#include "daemon/tools/doctor/company_probe.hpp"
 #include "daemon/tools/doctor/judgements.hpp"
 #include "daemon/tools/doctor/machine_probe.hpp"
 #include "daemon/tools/doctor/rehearsal.hpp"
@@ -74,6 +75,11 @@ std::vector<Finding> examine(const Examination& examination, const std::function
 
   const std::string daemon = examination.daemon ? examination.daemon->software : std::string();
   all.push_back(judge(probe_port(config.stream.listen, daemon)));
+  if (config.wind.lead.is_in_company()) {
+    begin("the servers of [wind] lead and follow, up to 2 s");
+    for (const CompanyServerFacts& server : probe_company(config.wind.lead, kNetworkTimeout))
+      all.push_back(judge(server));
+  }
   begin("graphics, display and versions");
   const DisplayFacts display = probe_display();
   append(all, judge(display));

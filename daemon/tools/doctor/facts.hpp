@@ -73,6 +73,16 @@ struct ConfigFacts {
   std::vector<std::string> exposed{};  ///< secrets that others can read, from settings::exposed_secrets()
 };
 
+/// A server by which daemons share one wind ([wind] lead, follow).
+struct CompanyServerFacts {
+  std::string server{};
+  std::string channel{};
+  bool needs_leader = false;  ///< this daemon follows
+  bool is_connected = false;
+  bool is_led = false;    ///< a leader's tick came
+  std::string trouble{};  ///< why there is no connection; of a connection: what the server does not permit
+};
+
 struct DisplayFacts {
   std::vector<std::string> graphics{};  ///< /dev/dri/card0 ...
   std::string graphics_trouble{};       ///< why they cannot be opened

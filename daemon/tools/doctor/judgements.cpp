@@ -173,6 +173,26 @@ Finding judge(const PortFacts& port) {
   return error("port", fmt::format("cannot listen on {}: {}", port.address, port.trouble), remedy);
 }
 
+Finding judge(const CompanyServerFacts& server) {
+  if (!server.is_connected) {
+    const std::string host = host_of(server.server.substr(server.server.find("://") + 3));
+    return error("company",
+                 fmt::format("{}: {}", server.server, server.trouble.empty() ? "it does not reply" : server.trouble),
+                 fmt::format("ping -c 3 {}; on that machine: systemctl status nats-server", host));
+  }
+  if (!server.trouble.empty()) {
+    return error("company", fmt::format("{}: {}", server.server, server.trouble),
+                 "compare the server's permissions with those of leader-and-followers.conf; [wind] credentials");
+  }
+  if (server.is_led)
+    return ok("company", fmt::format("{}: a leader is heard on the channel {}", server.server, server.channel));
+  if (server.needs_leader) {
+    return warning("company", fmt::format("{}: no leader is heard on the channel {}", server.server, server.channel),
+                   "start the leader; its [wind] channel has to be the same, and its servers connected to this one");
+  }
+  return ok("company", server.server + ": connected");
+}
+
 std::vector<Finding> judge(const ConfigFacts& config) {
   if (!config.error.empty())
     return {error("configuration", config.error, fmt::format("yuragi check-config {}", config.file))};

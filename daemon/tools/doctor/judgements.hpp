@@ -22,6 +22,7 @@ std::vector<Finding> judge(const GroupFacts& groups);
 Finding judge(const ClockFacts& clock);
 Finding judge(const DiskFacts& disk);
 Finding judge(const PortFacts& port);
+Finding judge(const CompanyServerFacts& server);
 std::vector<Finding> judge(const ConfigFacts& config);
 std::vector<Finding> judge(const DisplayFacts& display);
 std::vector<Finding> judge(const VersionFacts& versions);

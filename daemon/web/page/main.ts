@@ -4,6 +4,7 @@ import { CalibrationView } from "./calibration_view";
 import { CameraView } from "./camera_view";
 import { Change } from "./change";
 import { by_id, element, set_text } from "./element";
+import { FleetView } from "./fleet_view";
 import { HandView } from "./hand_view";
 import { HealthView } from "./health_view";
 import { HistoryView } from "./history_view";
@@ -17,7 +18,7 @@ import { ScenesView } from "./scenes_view";
 import { Knowledge, verdict_of } from "./sentence";
 import { SensorsView } from "./sensors_view";
 import { SetupView } from "./setup_view";
-import { Player, Scene, Status } from "./status";
+import { FleetNode, Player, Scene, Status } from "./status";
 import { SupportView } from "./support_view";
 import { DAEMON_LANGUAGE, fill_in_texts, offer_languages, texts } from "./texts";
 import { WindView } from "./wind_view";
@@ -37,6 +38,7 @@ const setup = new SetupView(by_id("setup-place"), change);
 new CalibrationView(by_id("setup-place"), change, () => void setup.ask_now());
 const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
+const fleet = new FleetView(by_id("fleet-card"), by_id("fleet"));
 const history = new HistoryView(by_id("history"));
 const log = new LogView(by_id("log") as HTMLDetailsElement, by_id("log-note"), by_id("log-lines"));
 const archive = new ArchiveView(by_id("archive") as HTMLDetailsElement, by_id("archive-note"), by_id("archive-list"), change);
@@ -79,6 +81,7 @@ function forget(what: Knowledge): void {
     sensors.clear(heard_at);
     scenes.clear();
     players.clear();
+    fleet.clear();
     health.clear();
     look.clear();
     hand.clear();
@@ -107,9 +110,11 @@ async function ask_for_lists(): Promise<void> {
   try {
     const shown = await ask<{ scenes: Scene[] }>("/api/v1/scenes");
     const playing = await ask<{ players: Player[] }>("/api/v1/player");
+    const walls = await ask<{ nodes: FleetNode[] }>("/api/v1/fleet");
     if (knowledge.kind !== "news") return;
     scenes.show(shown.scenes);
     players.show(playing.players);
+    fleet.show(walls.nodes);
   } catch {
     // The link shows what is wrong.
   }

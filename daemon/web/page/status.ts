@@ -129,6 +129,19 @@ export interface Player {
   refusal: string;
 }
 
+/** A daemon that moves in the same wind, as its leader has heard it. */
+export interface FleetNode {
+  node: string;
+  is_silent: boolean;
+  last_word_s: number;
+  software: string;
+  part: string;
+  wind_m_s: number;
+  wind_from_deg: number;
+  behind_s: number;
+  attention: string[];
+}
+
 /** Of the last minutes, oldest first. */
 export interface RecentWind {
   age_s: number[];

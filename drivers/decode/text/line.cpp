@@ -260,7 +260,7 @@ void add_direction(const LineValue& direction_deg, LineWind& line) {
 
 /// Returns true if the line has a byte that only damage puts there.
 bool has_control_byte(std::string_view line) {
-  return std::ranges::any_of(line, [](char c) { return (c >= '\0' && c < ' ' && c != '\t') || c == '\x7f'; });
+  return std::ranges::any_of(line, [](unsigned char c) { return (c < ' ' && c != '\t') || c == '\x7f'; });
 }
 
 bool is_empty(const DecodedWind& wind) {

@@ -206,6 +206,15 @@ TEST_F(RoutesTest, Sessions_AreListedWhileTheyAreValid) {
   EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
 }
 
+TEST_F(RoutesTest, TheFleetIsTheLeadersList) {
+  EXPECT_EQ(json::parse(get("/api/v1/fleet").body)["nodes"], json::array()) << "this daemon does not lead";
+  const std::string nodes = R"({"nodes": [{"node": "foyer"}]})";
+  facts_.fleet = &nodes;
+  EXPECT_EQ(get("/api/v1/fleet").body, nodes);
+  facts_.age_s = 2.0 * facts_.patience_s;
+  EXPECT_EQ(get("/api/v1/fleet").status, 503U) << "nothing old is shown as if it were of now";
+}
+
 TEST_F(RoutesTest, TheWindOfTheLastMinutesHasAgesAndNoTimesSoThatNoClockMatters) {
   EXPECT_EQ(json::parse(get("/api/v1/wind").body)["age_s"], json::array());
   WindMemory memory;

@@ -164,6 +164,12 @@ export const english = {
   back: "Back by 30 seconds",
   forward: "Forward by 30 seconds",
 
+  // Fleet.
+  fleet: "Walls in this wind",
+  node_states: { well: "well", attention: "needs attention", silent: "silent" },
+  node_heard: (ago: string) => `heard ${ago}`,
+  node_late: (late: string) => `${late} late`,
+
   // Health.
   health: "Health",
   ticks: "Ticks",

@@ -156,6 +156,10 @@ export const french: Texts = {
   back: "Reculer de 30 secondes",
   forward: "Avancer de 30 secondes",
 
+  fleet: "Murs dans ce vent",
+  node_states: { well: "tout va bien", attention: "à surveiller", silent: "muet" },
+  node_heard: (ago) => `entendu ${ago}`,
+  node_late: (late) => `${late} de retard`,
   health: "Fonctionnement",
   ticks: "Cycles",
   ticks_skipped: (rate, skipped) => `${rate} Hz, ${skipped} omis en 10 minutes`,

@@ -155,6 +155,10 @@ export const german: Texts = {
   back: "30 Sekunden zurück",
   forward: "30 Sekunden vor",
 
+  fleet: "Wände in diesem Wind",
+  node_states: { well: "in Ordnung", attention: "braucht Aufmerksamkeit", silent: "stumm" },
+  node_heard: (ago) => `zuletzt gehört ${ago}`,
+  node_late: (late) => `${late} verspätet`,
   health: "Betrieb",
   ticks: "Takte",
   ticks_skipped: (rate, skipped) => `${rate} Hz, ${skipped} in 10 Minuten ausgelassen`,

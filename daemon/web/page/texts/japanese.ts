@@ -155,6 +155,10 @@ export const japanese: Texts = {
   back: "30 秒戻る",
   forward: "30 秒進む",
 
+  fleet: "この風の中の壁",
+  node_states: { well: "正常", attention: "注意が必要", silent: "応答なし" },
+  node_heard: (ago) => `${ago}に受信`,
+  node_late: (late) => `${late}遅れ`,
   health: "稼働状況",
   ticks: "周期処理",
   ticks_skipped: (rate, skipped) => `${rate} Hz、10 分間に ${skipped} 回スキップ`,

@@ -76,6 +76,25 @@ TEST(JudgeGroups, AreThoseOfTheDevices) {
   EXPECT_THAT(judge(groups), ElementsAre(is(Verdict::kOk, "sudo -u yuragi", "")));
 }
 
+TEST(JudgeCompany, NeedsAServerThatRepliesAndPermits) {
+  CompanyServerFacts server{.server = "nats://10.0.0.2:4222", .channel = "wind"};
+  EXPECT_THAT(judge(server), is(Verdict::kError, "nats://10.0.0.2:4222: it does not reply", "ping -c 3 10.0.0.2;"));
+  server.trouble = "connection refused";
+  EXPECT_THAT(judge(server), is(Verdict::kError, "4222: connection refused", "systemctl status nats-server"));
+  server.is_connected = true;
+  server.trouble = "does not permit this user something";
+  EXPECT_THAT(judge(server), is(Verdict::kError, "does not permit this user", "leader-and-followers.conf"));
+}
+
+TEST(JudgeCompany, NeedsALeaderWhereItFollows) {
+  CompanyServerFacts server{.server = "nats://wind:4222", .channel = "wind", .is_connected = true};
+  EXPECT_THAT(judge(server), is(Verdict::kOk, "nats://wind:4222: connected", ""));
+  server.needs_leader = true;
+  EXPECT_THAT(judge(server), is(Verdict::kWarning, "no leader is heard on the channel wind", "start the leader"));
+  server.is_led = true;
+  EXPECT_THAT(judge(server), is(Verdict::kOk, "a leader is heard on the channel wind", ""));
+}
+
 TEST(JudgeClock, HasToBeSetAndShouldBeKept) {
   EXPECT_THAT(judge(ClockFacts{in_year(2026), true}), is(Verdict::kOk, "2026-06-01T00:00:00Z, set by a time", ""));
   EXPECT_THAT(judge(ClockFacts{in_year(2026), std::nullopt}), is(Verdict::kOk, "2026-06-01", ""));
