@@ -20,7 +20,8 @@ class io_context;
 namespace yuragi::daemon::web {
 
 struct SocketLimits {
-  stream::AdmissionLimits places = {.max_clients = 64, .max_clients_per_address = 8};
+  /// 64 pages and 20 pictures, and some to spare.
+  stream::AdmissionLimits places = {.max_clients = 96, .max_clients_per_address = 8};
   /// A client that sends nothing for half of this is pinged; one that does not answer has to go.
   Nanoseconds silent_after = std::chrono::seconds(30);
   Nanoseconds stuck_after = std::chrono::seconds(5);   ///< reading nothing of what is sent

@@ -70,6 +70,8 @@ def web_socket(port, path, wish):
         kind, length = exactly(connection, 2)
         if length == 126:
             length = struct.unpack(">H", exactly(connection, 2))[0]
+        elif length == 127:
+            length = struct.unpack(">Q", exactly(connection, 8))[0]
         payload = exactly(connection, length)
         if kind & 0x0F == PING:
             connection.sendall(bytes([0x80 | PONG, 0x80 | length]) + bytes(4) + payload)

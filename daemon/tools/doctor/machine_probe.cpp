@@ -34,6 +34,7 @@ constexpr double kSecondsPerDay = 86400.0;
 constexpr auto kVersionTimeout = std::chrono::seconds(5);
 constexpr std::uint64_t kFilesOfTheDaemon = 64;  // sockets, timers, the recording, libraries
 constexpr std::uint64_t kFilesOfASensor = 8;
+constexpr std::uint64_t kFilesOfThePage = 192;  // WebSockets, and requests beside them
 constexpr std::size_t kMaxUserGroups = 256;
 
 std::string user_name() {
@@ -158,7 +159,8 @@ LimitFacts probe_limits(const settings::Config& config) {
     facts.open_files = files.rlim_cur;
     facts.most_open_files = files.rlim_max;
   }
-  facts.needed_open_files = kFilesOfTheDaemon + config.stream.max_clients + kFilesOfASensor * config.sensors.size();
+  facts.needed_open_files = kFilesOfTheDaemon + config.stream.max_clients + kFilesOfASensor * config.sensors.size() +
+                            (config.http.listen.empty() ? 0 : kFilesOfThePage);
   const std::string available_kib = line_of("/proc/meminfo", "MemAvailable:");
   if (!available_kib.empty()) facts.available_memory_bytes = 1024 * std::strtoull(available_kib.c_str(), nullptr, 10);
   return facts;

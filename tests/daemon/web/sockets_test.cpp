@@ -123,7 +123,7 @@ stream::SharedBytes share(wire::Bytes bytes) {
 
 class SocketsTest : public testing::Test {
  protected:
-  /// Its 64 places, unless the test chooses others.
+  /// Its 96 places, unless the test chooses others.
   void start(Settings settings = {}) {
     settings.listen = "127.0.0.1:0";
     settings.hello.tick_rate_hz = 1.0 / kTick_s;
