@@ -64,6 +64,14 @@ void Fleet::take(NodeReport report, MonoTime now) {
   heard_[name] = {std::move(report), now};
 }
 
+void Fleet::learn(NodeReport report, Nanoseconds age, MonoTime now) {
+  if (age < Nanoseconds::zero() || age > kForgottenAfter) return;
+  const auto heard = heard_.find(report.name);
+  if (heard == heard_.end() ? heard_.size() >= kMaxNodes : heard->second.at >= now - age) return;
+  const std::string name = report.name;
+  heard_[name] = {std::move(report), now - age};
+}
+
 std::vector<Node> Fleet::nodes(MonoTime now) const {
   std::vector<Node> nodes;
   for (const auto& [name, heard] : heard_) {

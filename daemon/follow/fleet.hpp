@@ -46,6 +46,8 @@ class Fleet {
   static constexpr std::size_t kMaxNodes = 1000;
 
   void take(NodeReport report, MonoTime now);
+  /// Learns of a report from the history, which is so old. It counts only if it is newer than what was heard.
+  void learn(NodeReport report, Nanoseconds age, MonoTime now);
 
   std::size_t size() const noexcept { return heard_.size(); }
   /// In the order of their names.

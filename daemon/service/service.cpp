@@ -383,9 +383,9 @@ class Service::Io {
   }
 
   void report_to_company(const wire::Sensors& status) {
-    const MonoTime now = clock_.now().mono;
-    if (now < next_report_) return;
-    next_report_ = now + kReportInterval;
+    const Instant now = clock_.now();
+    if (now.mono < next_report_) return;
+    next_report_ = now.mono + kReportInterval;
     company_->report({.name = {},
                       .software = {},
                       .part = {},
@@ -399,7 +399,7 @@ class Service::Io {
 
   void take_from_company() {
     contain("what came from other daemons", [this] {
-      if (company_) company_->take(clock_.now().mono);
+      if (company_) company_->take(clock_.now());
     });
   }
 
