@@ -97,6 +97,7 @@ std::vector<follow::Node> ask_leader(const settings::LeadConfig& config) {
       for (std::size_t i = 0; i < list->nodes.size(); ++i) nodes[list->first + i] = list->nodes[i];
       if (nodes.size() < list->all) continue;
       std::vector<follow::Node> all;
+      all.reserve(nodes.size());
       for (auto& [place, node] : nodes) all.push_back(std::move(node));
       return all;
     }

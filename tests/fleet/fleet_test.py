@@ -292,9 +292,9 @@ class Fleet(fleet.FleetTest):
         self.assertRegex(table, r"  \d\d:00 +no word")
         before_s = self.history(follower)["roof"]
         leader.end()  # in order: it hands in its last seconds
+        self.wait_for_history(follower, "roof", before_s)
         follower.end(signal.SIGKILL)
         leader = Daemon(self, "leader-again", lead=cluster.addresses(), wind=self.credentials("leader") + '\nnode = "roof"')
-        self.assertGreater(self.history(leader)["roof"], before_s)
 
         def find():
             """The follower in the list of a leader that has never heard it."""

@@ -5,8 +5,8 @@
 #include "daemon/follow/history_stream.hpp"
 #include "daemon/follow/questions.hpp"
 
-// Hostile questions, reports and histories of followers, and replies of whoever writes to a follower's inbox. What is accepted is
-// the same after it was written and read again.
+// Hostile questions, reports and histories of followers, and replies of whoever writes to a follower's inbox. What is
+// accepted is the same after it was written and read again.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace yuragi::daemon::follow;

@@ -122,7 +122,7 @@ TEST(NodeHistory, KeepsADayAtMost) {
   EXPECT_EQ(history.waiting(), NodeHistory::kMaxWaiting);
   const NodeEntries sent = read(history.due(kNow));
   EXPECT_EQ(sent.entries.size(), kMaxEntriesInMessage);
-  EXPECT_EQ(sent.entries[0].begin_utc_s, kNoon_s + 600 * (199 - 144));
+  EXPECT_EQ(sent.entries[0].begin_utc_s, kNoon_s + 600L * (199 - 144));
   // Some of those that are on their way are dropped meanwhile: no other entry is forgotten with the rest.
   for (std::int64_t i = 200; i < 210; ++i) history.add(report_of(1.0), utc(kNoon_s + 600 * i));
   history.take_reply(true, kNow + seconds(1));
@@ -210,7 +210,7 @@ TEST(NodeHistory, AFarewellHasTheNewestEntries) {
   for (std::int64_t i = 0; i < 100; ++i) history.add(report_of(1.0), utc(kNoon_s + 600 * i));
   const NodeEntries last = read(history.farewell());
   EXPECT_EQ(last.entries.size(), 50U);
-  EXPECT_EQ(last.entries.back().begin_utc_s, kNoon_s + 600 * 99);
+  EXPECT_EQ(last.entries.back().begin_utc_s, kNoon_s + 600L * 99);
 }
 
 TEST(NodeHistory, WhatIsNoHistoryIsRefused) {
@@ -248,7 +248,7 @@ TEST(FleetHistory, AnEntryThatWasStoredTwiceCountsOnce) {
   history.take({.node = "roof", .entries = {entry(kNoon_s, 100, 1.0), entry(kNoon_s - 600, 600, 4.0)}});
   history.take({.node = "roof", .entries = {entry(kNoon_s, 600, 2.0), entry(kNoon_s + 600, 200, 6.0)}});
   history.take({.node = "roof", .entries = {entry(kNoon_s, 300, 9.0)}});
-  history.take({.node = "room", .entries = {entry(kNoon_s - 7 * 86'400, 600, 9.0)}});
+  history.take({.node = "room", .entries = {entry(kNoon_s - 7L * 86'400, 600, 9.0)}});
   ASSERT_EQ(history.nodes().size(), 2U);
   const auto hours = hours_of(history.nodes().at("roof"), utc(kNoon_s + 1800));
   ASSERT_EQ(hours.size(), 24U);
