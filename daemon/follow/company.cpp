@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/settings/config_error.hpp"
+#include "engine/base/contain.hpp"
 #include "engine/wire/lead/wind_tick.hpp"
 
 namespace yuragi::daemon::follow {
@@ -54,12 +55,17 @@ Company::Company(const settings::Config& config, const std::string& machine, std
       states_subject_(config_.channel + ".state"),
       questions_subject_(config_.channel + ".ask"),
       reports_subject_(config_.channel + ".node"),
+      history_subject_(history_subject_of(config_.channel)),
       node_(config_.node.empty() ? machine : config_.node),
       steps_(steps),
       makeup_(makeup_of(config)),
       leader_(makeup_, config.animation.rate_hz, from_seconds(config_.delay_s), state_bytes,
               {.ticks = ticks_subject_, .states = states_subject_}, steps,
               [this](const std::string& subject, const Bytes& bytes) { link_.publish(subject, bytes); }),
+      history_(node_),
+      history_stream_(
+          config_.channel,
+          [this](const StreamRequest& request) { link_.publish(request.subject, request.bytes, link_.inbox()); }),
       follower_(
           makeup_, from_seconds(config_.delay_s), steps,
           [this](const Bytes& question) { link_.publish(questions_subject_, question, link_.inbox()); },
@@ -73,6 +79,12 @@ Company::Company(const settings::Config& config, const std::string& machine, std
       leave_after_(hangs_after_),
       link_(link_settings(config_, makeup_.software), subjects(), std::move(on_arrival)) {
   if (leads_) lead(now);
+}
+
+Company::~Company() {
+  contain("the last entries of the history", [this] {
+    if (const auto message = history_.farewell()) link_.publish(history_subject_, *message);
+  });
 }
 
 /// What this daemon's part takes.
@@ -89,9 +101,11 @@ void Company::lead(const Instant& now) {
   const std::uint64_t latest = std::max({others_epoch_, follower_.latest_epoch(), leader_.epoch()});
   leader_.begin_epoch(now.utc, latest, std::max(follower_.newest_number(), steps_.position().number));
   follower_.leave();
+  history_stream_.begin(link_.inbox(), now.mono);
 }
 
-void Company::take(MonoTime now) {
+void Company::take(const Instant& instant) {
+  const MonoTime now = instant.mono;
   for (const NatsMessage& message : link_.received()) {
     if (message.subject == ticks_subject_) {
       heard_ = now;
@@ -107,10 +121,37 @@ void Company::take(MonoTime now) {
       if (leads_) leader_.answer(message.bytes, message.reply_to, now);
     } else if (message.subject == reports_subject_) {
       leader_.take_report(message.bytes, now);
+    } else if (message.subject == history_subject_) {
+      if (!leads_) continue;
+      leader_.take_history(message.bytes, instant);
+      history_stream_.note_message(now);
+    } else if (!message.bytes.empty() && message.bytes.front() == '{') {
+      take_from_jetstream(message.bytes, now);
     } else if (!leads_) {
       follower_.take_reply(message.bytes, now);
     }
   }
+}
+
+/// Other replies to the inbox do not begin with a brace.
+void Company::take_from_jetstream(const std::vector<std::uint8_t>& bytes, MonoTime now) {
+  const auto reply = decode_stream_reply(bytes);
+  if (!reply) return;
+  if (reply->kind == StreamReply::Kind::kStored) {
+    history_.take_reply(reply->is_success(), now);
+    hand_in_history(now);
+  } else if (leads_) {
+    history_stream_.take_reply(*reply, now);
+  }
+}
+
+void Company::hand_in_history(MonoTime now) {
+  const NatsLink::State link = link_.state();
+  if (!link.is_connected) return;
+  if (link.connections != connections_) history_.note_connection(now);
+  connections_ = link.connections;
+  if (const auto message = history_.due(now)) link_.publish(history_subject_, *message, link_.inbox());
+  if (leads_) history_stream_.advance(now);
 }
 
 void Company::advance(const wind::ground::DrivingWind& wind, const Instant& now, std::uint32_t periods) {
@@ -167,14 +208,16 @@ void Company::change(const settings::Config& config, const Instant& now) {
   if (leads_) lead(now);
 }
 
-void Company::report(NodeReport report, MonoTime now) {
+void Company::report(NodeReport report, const Instant& now) {
   report.name = node_;
   report.software = makeup_.software;
-  report.part = part(now);
+  report.part = part(now.mono);
   const animation::LedSteps::Position at = steps_.position();
   report.tick = at.number;
   report.behind_s = at.behind_s;
+  history_.add(report, now.utc);
   link_.publish(reports_subject_, encode(report));
+  hand_in_history(now.mono);
 }
 
 std::string Company::trouble(const NatsLink::State& link, MonoTime now) const {

@@ -9,8 +9,10 @@
 #include "daemon/animation/led_steps.hpp"
 #include "daemon/follow/fleet.hpp"
 #include "daemon/follow/follower.hpp"
+#include "daemon/follow/history_stream.hpp"
 #include "daemon/follow/leader.hpp"
 #include "daemon/follow/nats_link.hpp"
+#include "daemon/follow/node_history.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
@@ -30,6 +32,7 @@ NatsSettings link_settings(const settings::LeadConfig& config, std::string name)
 ///     CHANNEL.state  the state of the leader's scenes, when several followers have asked for it
 ///     CHANNEL.ask    from followers to the leader, who replies to _INBOX.>
 ///     CHANNEL.node   from each daemon to those that may lead: what becomes of it (Fleet)
+///     CHANNEL.history  from each daemon to JetStream: the same in entries of ten minutes (NodeHistory)
 ///
 /// A leader that hears another one with a later epoch takes over again, but a stand-by gives way. Belongs to the I/O
 /// thread; nothing here waits.
@@ -41,8 +44,13 @@ class Company {
   Company(const settings::Config& config, const std::string& machine, std::size_t state_bytes,
           animation::LedSteps& steps, Instant now, std::function<void()> on_arrival, Follower::Listener listener);
 
+  /// Hands in the last entries of the history, without waiting for the reply.
+  ~Company();
+  Company(const Company&) = delete;
+  Company& operator=(const Company&) = delete;
+
   /// Takes what has come from the network.
-  void take(MonoTime now);
+  void take(const Instant& now);
   /// At each step of the own wind, shaped, which takes `periods` of the animation.
   void advance(const wind::ground::DrivingWind& wind, const Instant& now, std::uint32_t periods);
 
@@ -59,7 +67,7 @@ class Company {
   void change(const settings::Config& config, const Instant& now);
 
   /// What becomes of this daemon, for the list of all: call it about once a second. `name` and `part` are filled in.
-  void report(NodeReport report, MonoTime now);
+  void report(NodeReport report, const Instant& now);
 
   struct Status {
     std::string server, channel;
@@ -76,17 +84,22 @@ class Company {
   bool stands_by() const noexcept { return !config_.lead.empty() && !config_.follow.empty(); }
   std::vector<std::string> subjects() const;
   void lead(const Instant& now);
+  void take_from_jetstream(const std::vector<std::uint8_t>& bytes, MonoTime now);
+  void hand_in_history(MonoTime now);
   void keep_leading(const Instant& now);
   void leave_hanging_server(MonoTime now);
   std::string trouble(const NatsLink::State& link, MonoTime now) const;
   std::string part(MonoTime now) const;
 
   const settings::LeadConfig config_;
-  const std::string ticks_subject_, states_subject_, questions_subject_, reports_subject_;
+  const std::string ticks_subject_, states_subject_, questions_subject_, reports_subject_, history_subject_;
   const std::string node_;
   animation::LedSteps& steps_;
   PictureMakeup makeup_;
   Leader leader_;
+  NodeHistory history_;
+  HistoryStream history_stream_;
+  std::uint64_t connections_ = 0;  ///< of the link, when the history was handed in last
   Follower follower_;
   bool leads_;
   std::optional<MonoTime> two_leaders_;  ///< when another one with a later epoch was heard last, as a leader

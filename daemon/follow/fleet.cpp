@@ -19,13 +19,23 @@ namespace {
 constexpr std::size_t kMaxAttention = 5, kMaxText_bytes = 300;
 constexpr std::size_t kNodesInMessage = 50;
 
+nlohmann::json number_or_null(const std::optional<double>& number) {
+  return number ? nlohmann::json(*number) : nlohmann::json();
+}
+
 nlohmann::json json_of(const NodeReport& report) {
   nlohmann::json attention = nlohmann::json::array();
   for (std::size_t i = 0; i < std::min(report.attention.size(), kMaxAttention); ++i)
     attention.push_back(shortened(report.attention[i], kMaxText_bytes / 4));
-  return {{"node", report.name},         {"software", report.software},           {"part", report.part},
-          {"wind_m_s", report.wind_m_s}, {"wind_from_deg", report.wind_from_deg}, {"tick", report.tick},
-          {"behind_s", report.behind_s}, {"attention", std::move(attention)}};
+  return {{"node", report.name},
+          {"software", report.software},
+          {"part", report.part},
+          {"wind_m_s", report.wind_m_s},
+          {"wind_from_deg", report.wind_from_deg},
+          {"tick", report.tick},
+          {"behind_s", report.behind_s},
+          {"clock_offset_s", number_or_null(report.clock_offset_s)},
+          {"attention", std::move(attention)}};
 }
 
 Result<NodeReport, Failure> report_of(const nlohmann::json& json) {
@@ -47,6 +57,7 @@ Result<NodeReport, Failure> report_of(const nlohmann::json& json) {
                     .wind_from_deg = *from_deg,
                     .tick = *tick,
                     .behind_s = *behind_s,
+                    .clock_offset_s = number_at(json, "clock_offset_s", 1e9),  // others may not have it
                     .attention = {}};
   for (const nlohmann::json& one : *attention) {
     auto text = short_text(one, kMaxText_bytes);
@@ -63,6 +74,14 @@ void Fleet::take(NodeReport report, MonoTime now) {
   const std::string name = report.name;
   if (heard_.size() >= kMaxNodes && !heard_.contains(name)) return;
   heard_[name] = {std::move(report), now};
+}
+
+void Fleet::learn(NodeReport report, Nanoseconds age, MonoTime now) {
+  if (age < Nanoseconds::zero() || age > kForgottenAfter) return;
+  const auto heard = heard_.find(report.name);
+  if (heard == heard_.end() ? heard_.size() >= kMaxNodes : heard->second.at >= now - age) return;
+  const std::string name = report.name;
+  heard_[name] = {std::move(report), now - age};
 }
 
 std::vector<Node> Fleet::nodes(MonoTime now) const {
@@ -148,6 +167,7 @@ nlohmann::ordered_json nodes_json(const std::vector<Node>& nodes) {
                    {"wind_from_deg", report.wind_from_deg},
                    {"tick", report.tick},
                    {"behind_s", report.behind_s},
+                   {"clock_offset_s", number_or_null(report.clock_offset_s)},
                    {"attention", report.attention}});
   }
   return {{"nodes", std::move(all)}};

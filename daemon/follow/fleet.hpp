@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,8 +22,9 @@ struct NodeReport {
   double wind_m_s = 0.0;
   double wind_from_deg = 0.0;
   std::uint64_t tick = 0;
-  double behind_s = 0.0;               ///< how late it makes a tick
-  std::vector<std::string> attention;  ///< what needs a person's; empty: all is well
+  double behind_s = 0.0;                      ///< how late it makes a tick
+  std::optional<double> clock_offset_s = {};  ///< its clock less UTC; nullopt: unknown, or not watched there
+  std::vector<std::string> attention;         ///< what needs a person's; empty: all is well
 };
 
 /// The same, as the list has it.
@@ -48,6 +50,8 @@ class Fleet {
   static constexpr std::size_t kMaxNodes = 1000;
 
   void take(NodeReport report, MonoTime now);
+  /// Learns of a report from the history, which is so old. It counts only if it is newer than what was heard.
+  void learn(NodeReport report, Nanoseconds age, MonoTime now);
 
   std::size_t size() const noexcept { return heard_.size(); }
   /// In the order of their names.
@@ -72,7 +76,7 @@ std::vector<std::uint8_t> list_bytes(const NodeList& list);
 Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes);
 
 /// For people's programs: {"nodes": [{"node", "is_silent", "last_word_s", "software", "part", "wind_m_s",
-/// "wind_from_deg", "tick", "behind_s", "attention"}]}.
+/// "wind_from_deg", "tick", "behind_s", "clock_offset_s" (or null), "attention"}]}.
 nlohmann::ordered_json nodes_json(const std::vector<Node>& nodes);
 std::string nodes_text(const std::vector<Node>& nodes);
 

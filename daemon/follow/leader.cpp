@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/follow/node_history.hpp"
+
 namespace yuragi::daemon::follow {
 namespace {
 
@@ -101,6 +103,28 @@ void Leader::take_report(std::span<const std::uint8_t> bytes, MonoTime now) {
     return;
   }
   fleet_.take(std::move(*report), now);
+}
+
+void Leader::take_history(std::span<const std::uint8_t> bytes, const Instant& now) {
+  auto history = decode_node_entries(bytes);
+  if (!history) {
+    ++counts_.refused;
+    return;
+  }
+  for (HistoryEntry& entry : history->entries) {
+    const UtcTime end{std::chrono::seconds(entry.end_utc_s())};
+    // An entry of a clock that is ahead is no newer than now.
+    const Nanoseconds age = std::max(now.utc - end, Nanoseconds::zero());
+    fleet_.learn({.name = history->node,
+                  .software = std::move(entry.software),
+                  .part = std::move(entry.part),
+                  .wind_m_s = entry.mean_wind_m_s,
+                  .wind_from_deg = 0.0,
+                  .tick = 0,
+                  .behind_s = entry.max_behind_s,
+                  .attention = {}},
+                 age, now.mono);
+  }
 }
 
 void Leader::send_ticks(const Question& question, const std::string& reply_to) {

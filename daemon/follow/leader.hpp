@@ -62,6 +62,8 @@ class Leader {
 
   /// Takes what a node reports of itself. What is no report is counted.
   void take_report(std::span<const std::uint8_t> bytes, MonoTime now);
+  /// Takes a message of the history: nodes that are not heard any more are in the list.
+  void take_history(std::span<const std::uint8_t> bytes, const Instant& now);
   const Fleet& fleet() const noexcept { return fleet_; }
 
   /// Its scenes are others from now on: call begin_epoch() then.

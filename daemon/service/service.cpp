@@ -385,9 +385,9 @@ class Service::Io {
   }
 
   void report_to_company(const wire::Sensors& status) {
-    const MonoTime now = clock_.now().mono;
-    if (now < next_report_) return;
-    next_report_ = now + kReportInterval;
+    const Instant now = clock_.now();
+    if (now.mono < next_report_) return;
+    next_report_ = now.mono + kReportInterval;
     wire::Sensors told = status;
     folders_.remove_from(told);
     company_->report({.name = {},
@@ -397,13 +397,14 @@ class Service::Io {
                       .wind_from_deg = wind::direction_from_deg(status.wind.wind),
                       .tick = 0,
                       .behind_s = 0.0,
+                      .clock_offset_s = clock_watch_ ? clock_watch_->latest().offset_s : std::nullopt,
                       .attention = state::needs_attention(told)},
                      now);
   }
 
   void take_from_company() {
     contain("what came from other daemons", [this] {
-      if (company_) company_->take(clock_.now().mono);
+      if (company_) company_->take(clock_.now());
     });
   }
 

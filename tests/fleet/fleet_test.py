@@ -260,6 +260,66 @@ class Fleet(fleet.FleetTest):
         add_row("a publisher without rights", equal=f"{equal} of {common}", seconds=took_s)
         self.assertEqual((leader.feed()["trouble"], follower.feed()["trouble"]), ("", ""))
 
+    def history(self, daemon):
+        """The seconds of the last day that each node was heard, as JetStream has them; None if they cannot be read yet."""
+        done = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--history", "--config", daemon.file, "--json"], timeout=HANG_S,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        self.assertIn(done.returncode, (0, 2), done.stderr)
+        if done.returncode == 2:
+            return None
+        return {node["node"]: sum(hour["heard_s"] for hour in node["hours"]) for node in json.loads(done.stdout)["nodes"]}
+
+    def wait_for_history(self, daemon, name, more_than_s):
+        def find():
+            return (self.history(daemon) or {}).get(name, 0) > more_than_s
+        daemon.stream.wait_until(find, f"more than {more_than_s} s of {name} in the history", every=RATE_HZ)
+
+    def test_a_history_is_kept_while_the_server_is_away(self):
+        cluster = Cluster(self, PERMISSIONS, stores=True)
+        leader = Daemon(self, "leader", lead=cluster.addresses(), wind=self.credentials("leader") + '\nnode = "roof"')
+        follower = Daemon(self, "follower", follow=cluster.nodes[2].address, wind=self.credentials("follower") + '\nnode = "room"')
+        for name in ("roof", "room"):
+            self.wait_for_history(leader, name, 0)
+        self.assertEqual((leader.feed()["trouble"], follower.feed()["trouble"]), ("", ""))
+        for node in cluster.nodes:
+            stored = os.path.join(self.folder, node.name, "jetstream", "$G", "streams", "yuragi_wind")
+            self.assertTrue(os.path.isdir(stored), f"{node.name} has no replica")
+        before_s = self.history(leader)["room"]
+        cluster.nodes[2].kill()
+        away_s = 4
+        follower.stream.wait_for_frames(away_s * RATE_HZ)
+        self.assertEqual(self.history(leader)["room"], before_s)
+        cluster.nodes[2].start()
+        # Nothing else is handed in within these ten minutes: these are seconds in which the server was away.
+        self.wait_for_history(leader, "room", before_s + away_s - 2)
+        table = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--history", "--config", follower.file], timeout=HANG_S,
+                               stdout=subprocess.PIPE, text=True, check=True).stdout
+        self.assertRegex(table, r"(?m)^room\n  yuragi \S+\n.*\n.* heard .*\n(.*\n)*?  \d\d:00 +\d+ min +\d+\.\d m/s ")
+        self.assertRegex(table, r"  \d\d:00 +no word")
+        before_s = self.history(follower)["roof"]
+        leader.end()  # in order: it hands in its last seconds
+        self.wait_for_history(follower, "roof", before_s)
+        follower.end(signal.SIGKILL)
+        leader = Daemon(self, "leader-again", lead=cluster.addresses(), wind=self.credentials("leader") + '\nnode = "roof"')
+
+        def find():
+            """The follower in the list of a leader that has never heard it."""
+            listed = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--config", leader.file, "--json"], timeout=HANG_S,
+                                    stdout=subprocess.PIPE, check=False).stdout
+            return [node for node in json.loads(listed or '{"nodes": []}')["nodes"] if node["node"] == "room" and node["is_silent"]]
+        room, = leader.stream.wait_until(find, "the node that is gone, in the leader's list", every=RATE_HZ)
+        self.assertGreater(room["last_word_s"], 5.0)
+        add_row("history: the server was away; the leader is started again")
+
+    def test_a_history_needs_jetstream(self):
+        server = Server(self, "server")
+        leader = Daemon(self, "leader", lead=server.address)
+        done = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--history", "--config", leader.file], timeout=HANG_S,
+                              stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, "JetStream does not reply: add `jetstream")
+        self.assertEqual(leader.feed()["trouble"], "")
+
     @staticmethod
     def epoch(client):
         """Of the leader."""

@@ -12,7 +12,7 @@ from programs import HANG_S, Program, free_port
 class Server:
     """A nats-server, which a test can kill, hold up and start again at the same port. `more`: lines of its configuration."""
 
-    def __init__(self, test, name, more="", scheme="nats"):
+    def __init__(self, test, name, more="", scheme="nats", waits=True):
         self.test, self.name, self.port = test, name, free_port()
         self.address = f"{scheme}://127.0.0.1:{self.port}"
         self.file = os.path.join(test.folder, name + ".conf")
@@ -20,11 +20,12 @@ class Server:
             # Such a server is left by its leaf nodes and its neighbours within 1.5 s when it hangs.
             file.write(f'host: "127.0.0.1"\nport: {self.port}\nserver_name: "{name}"\nlogtime: true\nping_interval: "500ms"\nping_max: 2\n{more}')
         test.servers.append(self)
-        self.start()
+        self.start(waits)
 
-    def start(self):
+    def start(self, waits=True):
         self.program = self.test.enterContext(Program("nats-server", "-c", self.file))
-        self.program.wait_for("Server is ready")
+        if waits:
+            self.program.wait_for("Server is ready")
 
     def kill(self):
         self.program.end(signal.SIGKILL)
@@ -38,15 +39,18 @@ class Server:
 
 
 class Cluster:
-    """Three servers, and a leaf node that is connected to one of them."""
+    """Three servers, and a leaf node that is connected to one of them. `more`: lines of each one's configuration. With `stores` each of
+    the three has JetStream, and they have elected who places streams."""
 
-    def __init__(self, test):
+    def __init__(self, test, more="", stores=False):
         routes, leaves = [free_port() for _ in range(3)], [free_port() for _ in range(3)]
         others = ", ".join(f'"nats://127.0.0.1:{port}"' for port in routes)
         self.nodes = [Server(test, f"node-{i}", f"""
 leafnodes {{ listen: "127.0.0.1:{leaves[i]}" }}
 cluster {{ name: "fleet", listen: "127.0.0.1:{routes[i]}", routes: [{others}], no_advertise: true }}
-""") for i in range(3)]
+{more}""" + (f'jetstream {{ store_dir: "{test.folder}/node-{i}", max_mem: 0, max_file: 128MB }}\n' if stores else ""), waits=False) for i in range(3)]
+        for node in self.nodes:
+            node.program.wait_for("JetStream cluster (new )?metadata leader" if stores else "Server is ready")
         # One entry with several addresses: two entries would be a loop.
         remotes = ", ".join(f'"nats://127.0.0.1:{port}"' for port in leaves)
         self.leaf = Server(test, "leaf", f"""

@@ -2,10 +2,11 @@
 #include <cstdlib>
 #include <span>
 
+#include "daemon/follow/history_stream.hpp"
 #include "daemon/follow/questions.hpp"
 
-// Hostile questions and reports of followers, and replies of whoever writes to a follower's inbox. What is accepted is
-// the same after it was written and read again.
+// Hostile questions, reports and histories of followers, and replies of whoever writes to a follower's inbox. What is
+// accepted is the same after it was written and read again.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace yuragi::daemon::follow;
@@ -21,5 +22,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (const auto report = decode_node_report(bytes)) {
     if (!decode_node_report(encode(*report))) std::abort();
   }
+  if (const auto history = decode_node_entries(bytes)) {
+    if (!decode_node_entries(encode(*history))) std::abort();
+  }
+  (void)decode_stream_reply(bytes);
   return 0;
 }

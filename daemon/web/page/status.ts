@@ -139,6 +139,7 @@ export interface FleetNode {
   wind_m_s: number;
   wind_from_deg: number;
   behind_s: number;
+  clock_offset_s: number | null;
   attention: string[];
 }
 

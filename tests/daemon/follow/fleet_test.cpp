@@ -18,6 +18,7 @@ NodeReport report_of(const std::string& name, std::vector<std::string> attention
           .wind_from_deg = 240.0,
           .tick = 107'000'000'000,
           .behind_s = 0.01,
+          .clock_offset_s = -0.002,
           .attention = std::move(attention)};
 }
 
@@ -63,12 +64,29 @@ TEST(Fleet, ManySentencesAreCountedAndAGoneNodeIsForgotten) {
   EXPECT_EQ(fleet.nodes(kNow + std::chrono::hours(24 * 8)).size(), 1U);
 }
 
+TEST(Fleet, LearnsOfANodeByAnAge_ButWhatWasHeardIsNewer) {
+  Fleet fleet;
+  fleet.take(report_of("roof"), kNow);
+  fleet.learn(report_of("roof", {"old"}), std::chrono::minutes(10), kNow);
+  fleet.learn(report_of("room 1"), std::chrono::hours(5), kNow);
+  fleet.learn(report_of("room 1"), std::chrono::hours(8), kNow);
+  fleet.learn(report_of("room 2"), std::chrono::hours(24 * 8), kNow);
+  fleet.learn(report_of("room 2"), std::chrono::hours(-1), kNow);
+  const std::vector<Node> nodes = fleet.nodes(kNow);
+  ASSERT_EQ(nodes.size(), 2U);
+  EXPECT_FALSE(nodes[0].is_silent);
+  EXPECT_TRUE(nodes[0].report.attention.empty());
+  EXPECT_TRUE(nodes[1].is_silent);
+  EXPECT_EQ(nodes[1].last_word_s, 5.0 * 3600.0);
+}
+
 TEST(Fleet, AReportIsReadAsItWasWritten_AndPrintable) {
   const auto read = decode_node_report(encode(report_of("room\n3", {"a", "b\x1b"})));
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->name, "room?3");
   EXPECT_EQ(read->tick, 107'000'000'000U);
   EXPECT_EQ(read->wind_m_s, 4.5);
+  EXPECT_EQ(read->clock_offset_s, -0.002);
   EXPECT_EQ(read->attention, (std::vector<std::string>{"a", "b?"}));
 }
 
