@@ -145,8 +145,8 @@ follow::FleetHistory ask_jetstream(const settings::LeadConfig& config) {
   }
   if (expected) waiting.give_up(fmt::format("only {} of {} messages of the history came: try again", come, *expected));
   waiting.give_up(
-      "no history, because JetStream does not reply: add `jetstream { store_dir: \"/var/lib/nats\" }` to the "
-      "configuration of nats-server, and restart it");
+      "no history, because JetStream does not reply: if it does not in a minute either, add "
+      "`jetstream { store_dir: \"/var/lib/nats\" }` to the configuration of nats-server, and restart it");
 }
 
 std::string state_of(const follow::Node& node) {

@@ -50,12 +50,25 @@ leafnodes {{ listen: "127.0.0.1:{leaves[i]}" }}
 cluster {{ name: "fleet", listen: "127.0.0.1:{routes[i]}", routes: [{others}], no_advertise: true }}
 {more}""" + (f'jetstream {{ store_dir: "{test.folder}/node-{i}", max_mem: 0, max_file: 128MB }}\n' if stores else ""), waits=False) for i in range(3)]
         for node in self.nodes:
-            node.program.wait_for("JetStream cluster (new )?metadata leader" if stores else "Server is ready")
+            node.program.wait_for("Server is ready")
+        if stores:
+            self.wait_for_election(test)
         # One entry with several addresses: two entries would be a loop.
         remotes = ", ".join(f'"nats://127.0.0.1:{port}"' for port in leaves)
         self.leaf = Server(test, "leaf", f"""
 leafnodes {{ reconnect: 1, remotes: [{{ urls: [{remotes}] }}] }}
 """)
+
+    def wait_for_election(self, test):
+        """The one that is elected logs it; others may not."""
+        elected = threading.Event()
+
+        def look(program):
+            if program.wait_until(lambda text: "Self is new JetStream cluster metadata leader" in text):
+                elected.set()
+        for node in self.nodes:
+            threading.Thread(target=look, args=(node.program,), daemon=True).start()
+        test.assertTrue(elected.wait(HANG_S), test.logs())
 
     def addresses(self, first=0):
         """Of the nodes, in their order from this one on."""
