@@ -288,9 +288,8 @@ class Fleet(fleet.FleetTest):
         for node in cluster.nodes:
             stored = os.path.join(self.folder, node.name, "jetstream", "$G", "streams", "yuragi_wind")
             self.assertTrue(os.path.isdir(stored), f"{node.name} has no replica")
-        before_s = self.history(leader)["room"]
         cluster.nodes[2].kill()
-        away_s = 4
+        before_s, away_s = self.history(leader)["room"], 4
         follower.stream.wait_for_frames(away_s * RATE_HZ)
         self.assertEqual(self.history(leader)["room"], before_s)
         cluster.nodes[2].start()
