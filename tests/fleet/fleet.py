@@ -126,7 +126,7 @@ class Stream:
 
 
 class Daemon(Program):
-    """`lead`, `follow`: addresses of servers, separated by commas. `wind`: further lines of [wind]. `scenes`: as SCENES has them.
+    """`lead`, `follow`: addresses of servers, separated by commas; empty: not. `wind`: further lines of [wind]. `scenes`: as SCENES has them.
     Its `stream` is read from the start, if it is watched: each frame is hashed here, which costs more than the daemon itself. `program`: the
     words of another build of it."""
 
@@ -139,7 +139,10 @@ class Daemon(Program):
         self.file = os.path.join(folder, "wall.toml")
         with open(self.file, "w", encoding="utf-8") as file:
             file.write(f"seed = {seed}\n[animation]\nrate = {RATE_HZ}\nresume = false\n"
-                       f'[wind]\nlead = "{lead}"\nfollow = "{follow}"\ndefault_speed = {speed_m_s}\n{wind}\n')
+                       f"[wind]\ndefault_speed = {speed_m_s}\n")
+            for part, servers in (("lead", lead), ("follow", follow)):
+                file.write(f'{part} = "{servers}"\n' if servers else "")
+            file.write(wind + "\n")
             for place, (scene, values) in enumerate(scenes.items()):
                 file.write(f'[[scene]]\nname = "{scene}"\n{values}\nx = {5 * place}\n')
         super().__init__(*(program or [os.path.join(test.programs, "yuragi")]), "run", "--config", self.file, "--listen", "127.0.0.1:0",

@@ -349,6 +349,21 @@ class Fleet(fleet.FleetTest):
         wrong = Daemon(self, "wrong-password", follow=server.address, wind=self.credentials("follower", "follower:wrong"))
         self.assertRegex(wrong.doctor(), rf"error +company +{server.address}: .*does not accept this user")
 
+    def test_the_guide_leads_from_one_machine_to_a_venue(self):
+        with open(os.path.join(PROJECT, "config", "guide", "several-machines.md"), encoding="utf-8") as guide:
+            parts = re.findall(r"(?m)^    \[wind\]\n((?:    .+\n)+)", guide.read())
+        server = Server(self, "server")
+        lead, follow, stand_by = (re.sub(r"(?m)^    ", "", part).replace("nats://10.0.0.5:4222", server.address) for part in parts)
+        leader, follower, other = (Daemon(self, name, wind=f'node = "{name}"\n{part}')
+                                   for name, part in (("roof", lead), ("room", follow), ("stand-by", stand_by)))
+        for one in (follower, other):
+            self.wait_until_equal(leader, one)
+            one.wait_for_feed("sends", "the same picture as its leader")
+        command = [os.path.join(self.programs, "yuragi"), "fleet", "--config", follower.file, "--json"]
+        nodes = json.loads(subprocess.run(command, timeout=HANG_S, stdout=subprocess.PIPE, check=False).stdout)["nodes"]
+        self.assertEqual([node["node"] for node in nodes], ["roof", "room", "stand-by"])
+        self.assertEqual([node["part"] for node in nodes][0], "leads")
+
     def test_the_leaders_page_shows_each_wall_and_which_one_is_silent(self):
         missing = [path for path in (CHROMIUM, os.path.join(BROWSER_TOOLS, "node_modules")) if not os.path.exists(path)]
         if missing or not shutil.which("node"):
