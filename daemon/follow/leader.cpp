@@ -10,7 +10,7 @@ namespace {
 constexpr auto kSaveEvery = std::chrono::seconds(1);
 /// A reply goes to the inbox of a link, and nowhere else: nobody has others' subjects flooded.
 constexpr std::string_view kInbox = "_INBOX.";
-constexpr std::size_t kSlack_bytes = 64 * 1024;
+constexpr std::size_t kSlack_bytes = 64UL * 1024;
 
 }  // namespace
 

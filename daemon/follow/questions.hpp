@@ -51,7 +51,7 @@ struct StatePart {
 using Reply = std::variant<Introduction, Ticks, StatePart, NodeList>;
 
 /// The most bytes of ticks or of a state in one message; NATS takes 1 MB.
-inline constexpr std::size_t kMostInMessage_bytes = 128 * 1024;
+inline constexpr std::size_t kMostInMessage_bytes = 128UL * 1024;
 /// The largest state: many times the garden's.
 inline constexpr std::size_t kMaxState_bytes = 64U << 20U;
 

@@ -17,7 +17,7 @@
 namespace yuragi::daemon::follow {
 
 /// The largest JSON text of a message, and how deep it may be.
-inline constexpr std::size_t kMaxJson_bytes = 128 * 1024;
+inline constexpr std::size_t kMaxJson_bytes = 128UL * 1024;
 inline constexpr int kDeepestJson = 4;
 
 /// The JSON of a message from another machine; null if it is none, too long or too deep.

@@ -132,6 +132,7 @@ std::vector<look::Camera> cameras_of(const settings::Config& config) {
 
 std::vector<std::string> names_of(const std::vector<look::Camera>& cameras) {
   std::vector<std::string> names;
+  names.reserve(cameras.size());
   for (const look::Camera& camera : cameras) names.push_back(camera.name);
   return names;
 }

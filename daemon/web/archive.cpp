@@ -289,7 +289,7 @@ struct Archive::Shared {
   }
 
   JobOrder bundle_order() const {
-    JobOrder order{.kind = "support-bundle", .command = command({"support-bundle"})};
+    JobOrder order{.kind = "support-bundle", .command = command({"support-bundle"}), .niceness = Niceness::kAwaited};
     if (!settings.configuration.empty())
       order.command.insert(order.command.end(), {"--config", settings.configuration.string()});
     if (!settings.stream.empty()) order.command.insert(order.command.end(), {"--connect", settings.stream});

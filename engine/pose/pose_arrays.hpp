@@ -22,7 +22,11 @@ requires PoseLike<std::remove_const_t<AnyPose>>
 void for_each_array(AnyPose& pose, Visit&& visit) {
   using Kind = std::remove_const_t<AnyPose>;
   if constexpr (std::is_same_v<Kind, Pose>) {
-    std::visit([&](auto& kind) { for_each_array(kind, visit); }, pose);
+    // Unlike std::visit, this throws nothing: it serves functions that are noexcept.
+    if (auto* strands = std::get_if<StrandPose>(&pose)) for_each_array(*strands, visit);
+    if (auto* grid = std::get_if<GridPose>(&pose)) for_each_array(*grid, visit);
+    if (auto* tree = std::get_if<TreePose>(&pose)) for_each_array(*tree, visit);
+    if (auto* surface = std::get_if<SurfacePose>(&pose)) for_each_array(*surface, visit);
   } else if constexpr (std::is_same_v<Kind, StrandPose>) {
     visit(std::span(pose.bend_east_rad));
     visit(std::span(pose.bend_south_rad));

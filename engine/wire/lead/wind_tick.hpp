@@ -51,7 +51,7 @@ struct WindTick {
 
 /// The most that a tick may take: a longer one after a halt of the leader.
 inline constexpr std::uint32_t kMaxTickPeriods = 1000;
-inline constexpr std::size_t kMaxWindTick_bytes = 16 * 1024;
+inline constexpr std::size_t kMaxWindTick_bytes = 16UL * 1024;
 
 /// The bytes of a tick: about 1 kB, and 1 kB more for each place of measurement. Allocates. Thread-safe.
 std::vector<std::uint8_t> encode(const WindTick& tick);

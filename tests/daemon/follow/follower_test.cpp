@@ -73,7 +73,7 @@ struct Wall {
 class Network {
  public:
   using Take = std::function<void(const Bytes&)>;
-  void send(const Bytes& bytes, MonoTime now, bool is_tick, Take take) {
+  void send(const Bytes& bytes, MonoTime now, bool is_tick, const Take& take) {
     ++sent_;
     sent_bytes_ += bytes.size();
     if (is_cut || (is_tick && std::bernoulli_distribution(loss_of_ticks)(random_))) return;
