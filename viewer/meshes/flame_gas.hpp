@@ -42,7 +42,8 @@ class FlameGas {
   std::span<const float> extents() const { return extents_; }
   /// The distance that the gas has risen, as a part of the flame's height, modulo kRisenPeriod.
   double risen() const { return risen_; }
-  static constexpr double kRisenPeriod = 100.0;
+  /// A whole number of tiles for each rate at which fire.frag.glsl moves its noise, so that it never jumps.
+  static constexpr double kRisenPeriod = 10000.0;
 
  private:
   struct Cell {

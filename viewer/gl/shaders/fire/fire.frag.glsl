@@ -26,6 +26,7 @@ void main() {
   float chance = 0.3 + 0.4 * pixel_chance(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
   float soot = 0.0;
+  float clear = 1.0;  // the part of the light that the flame in front lets through
   bool was_inside = false;
   for (int i = 0; i < steps; ++i) {
     float part = clamp(v / reach, 0.0, 1.0);
@@ -64,11 +65,22 @@ void main() {
       float thick = smoothstep(0.0, 0.45, level) * (1.0 - 0.2 * smoothstep(0.40, 1.0, level));
       vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * min(v, 1.0), 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
       // What flies off is thinner and darker: it passes a place more often than three times in a second.
-      thick *= mix(1.0, 0.22, smoothstep(0.12, 0.60, v));
+      thick *= mix(1.0, mix(0.22, 0.36, by_day), smoothstep(0.12, 0.60, v));
       // Tongues: bright where both noises are high.
-      sum += hot.rgb * hot.rgb * (thick * step_m * (0.15 + 14.0 * one * one * two * two));
+      float bright = 0.15 + 14.0 * one * one * two * two;
+      // From near, the foot is made of flamelets that rise as slowly as its gas, with gaps between. Its gas hides what is
+      // behind, so that they do not blur into one another.
+      float foot = smoothstep(0.50, 0.15, v);
+      if (foot > 0.0) {
+        float three = textureLod(noise_tile, vec2(0.45 * across.x + 0.30 * across.y + 0.10 * one,
+                                                  0.05 * v - 0.0225 * risen + 0.12 * two), 0.0).r;
+        float flamelet = smoothstep(0.38, 0.64, three + 0.35 * (gas.r - 0.6));
+        bright *= mix(1.0, 0.15 + 1.9 * flamelet, foot);
+      }
+      sum += hot.rgb * hot.rgb * (clear * thick * step_m * bright);
+      clear /= 1.0 + foot * 3.5 * thick * step_m / size_m.x;
       // The blue of the root, where air still reaches the gas.
-      sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
+      sum += vec3(0.004, 0.012, 0.06) * (clear * step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
     }
     soot += gas.g * step_m;
     at_m += aside * step_m;
