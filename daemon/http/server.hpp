@@ -62,7 +62,7 @@ struct Limits {
   stream::AdmissionLimits clients = {};  ///< whose first request has come, if it does not ask for a WebSocket
   /// Those whose first request has not come, and those who ask for a WebSocket and have not got it. So many pages that
   /// open at once take no places of `clients`.
-  stream::AdmissionLimits newcomers = {.max_clients = 96, .max_clients_per_address = 16};
+  stream::AdmissionLimits newcomers = {.max_clients = 128, .max_clients_per_address = 16};
   std::uint32_t header_bytes = 16 * 1024;
   std::uint64_t body_bytes = 64UL * 1024;
   /// From the end of an answer to the end of the next request, and for writing an answer, or a piece of a file.

@@ -420,9 +420,9 @@ class Http(unittest.TestCase):
                         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n".encode())
         return [int(self.enterContext(one.makefile("rb")).readline().split()[1]) for one in sockets]
 
-    def test_64_web_sockets_that_open_at_once_are_served_and_no_more(self):
+    def test_96_web_sockets_that_open_at_once_are_served_and_no_more(self):
         self.start_daemon('[[sensor]]\ndriver = "synthetic"\n')
-        self.assertEqual(self.open_web_sockets(64), [101] * 64)
+        self.assertEqual(self.open_web_sockets(96), [101] * 96)
         self.assertEqual(self.open_web_sockets(1), [503])
         self.assertEqual(self.ask("/api/v1/status")[0], 200, "HTTP has places of its own")
 
