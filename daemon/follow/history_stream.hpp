@@ -39,8 +39,8 @@ struct StreamReply {
   };
   Kind kind = Kind::kStored;
   std::uint64_t error = 0;     ///< JetStream's number (err_code, or its code); 0: success
-  std::string trouble;         ///< the description of the error
-  std::string reader;          ///< of kReads: what JetStream calls it
+  std::string trouble = {};    ///< the description of the error
+  std::string reader = {};     ///< of kReads: what JetStream calls it
   std::uint64_t messages = 0;  ///< of kReads: how many will come
 
   bool is_success() const noexcept { return error == 0; }

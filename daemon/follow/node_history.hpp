@@ -25,9 +25,9 @@ struct HistoryEntry {
   double max_wind_m_s = 0.0;      ///< of the speed
   double max_behind_s = 0.0;      ///< NodeReport::behind_s
   std::uint32_t attention_s = 0;  ///< seconds in which something needed attention
-  std::string attention;          ///< the last sentence of it
-  std::string software;           ///< the last one
-  std::string part;               ///< the last one
+  std::string attention = {};     ///< the last sentence of it
+  std::string software = {};      ///< the last one
+  std::string part = {};          ///< the last one
 
   std::int64_t end_utc_s() const noexcept { return begin_utc_s + seconds; }
   /// The ten minutes of UTC that it belongs to.
