@@ -12,7 +12,8 @@ const TOO_BUSY = /WebSocket is closed before the connection is established/;
 
 /** `tools`: the folder with playwright-core; `programs`: that of ours. */
 export async function begin({ chromiumPath, programs, tools }) {
-  const { chromium } = createRequire(path.join(tools, "package.json"))("playwright-core");
+  const require = createRequire(path.join(tools, "package.json"));
+  const { chromium } = require("playwright-core");
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-browser-"));
   const running = new Set();
   const browser = await chromium.launch({
@@ -69,6 +70,15 @@ export async function begin({ chromiumPath, programs, tools }) {
       });
       await page.goto(url);
       return page;
+    },
+
+    /** What keeps people from using this page, as axe-core finds it. */
+    async accessibilityFaults(page) {
+      return page.evaluate(async (source) => {
+        if (!window.axe) Object.assign(window, { axe: new Function(source + "; return axe;")() });
+        const { violations } = await window.axe.run({ resultTypes: ["violations"] });
+        return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
+      }, fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8"));
     },
 
     async end() {

@@ -13,7 +13,6 @@ import { begin, HANG_MS } from "./chromium.mjs";
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
 const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort, archivePort, setupPort, calibrationPort, keepPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
-const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 
 const HOSTILE = `<img src=x onerror="document.title='owned'">`;
 const SCENES = `
@@ -46,14 +45,7 @@ const startSensor = () => start("yuragi-sim", ["nmea", "--tcp", `127.0.0.1:${sen
 const sentence = (page) => page.textContent("#sentence");
 const waitForSentence = (page, pattern) =>
   page.waitForFunction((source) => new RegExp(source).test(document.getElementById("sentence").textContent), pattern.source);
-async function assertAccessible(page, what) {
-  const faults = await page.evaluate(async (source) => {
-    if (!window.axe) Object.assign(window, { axe: new Function(source + "; return axe;")() });
-    const { violations } = await window.axe.run({ resultTypes: ["violations"] });
-    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
-  }, axe);
-  assert.deepEqual(faults, [], what);
-}
+const assertAccessible = async (page, what) => assert.deepEqual(await world.accessibilityFaults(page), [], what);
 /** Waits until the daemon is so. */
 async function waitFor(holds) {
   for (const hangs = Date.now() + HANG_MS; !(await holds()); ) assert.ok(Date.now() < hangs, String(holds));

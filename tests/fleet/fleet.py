@@ -151,25 +151,27 @@ class Daemon(Program):
         test.enterContext(self)
         self.stream = Stream(self) if is_watched else None
 
+    def run(self, *words):
+        """A command of the program, when it has ended."""
+        return subprocess.run([os.path.join(self.test.programs, "yuragi"), *words], timeout=HANG_S, capture_output=True, text=True, check=False)
+
     def feed(self):
         """What its status has of NATS: {"sends", "trouble", ...}."""
-        status = subprocess.run([os.path.join(self.test.programs, "yuragi"), "status", "--connect", self.address(), "--json"], timeout=HANG_S,
-                                stdout=subprocess.PIPE, check=False).stdout
-        return next(feed for feed in json.loads(status)["feeds"] if feed["kind"] == "nats")
+        status = json.loads(self.run("status", "--connect", self.address(), "--json").stdout)
+        return next(feed for feed in status["feeds"] if feed["kind"] == "nats")
 
     def doctor(self):
         """What `yuragi doctor` finds for its configuration."""
-        return subprocess.run([os.path.join(self.test.programs, "yuragi"), "doctor", "--config", self.file, "--connect", self.address()],
-                              timeout=HANG_S, stdout=subprocess.PIPE, text=True, check=False).stdout
+        return self.run("doctor", "--config", self.file, "--connect", self.address()).stdout
+
+    def nodes(self):
+        """The list of its leader; empty if no leader replies."""
+        return json.loads(self.run("fleet", "--config", self.file, "--json").stdout or '{"nodes": []}')["nodes"]
 
     def wait_for_feed(self, key, pattern):
         """Waits until this part of its status matches."""
-        def find():
-            return re.search(pattern, str(self.feed()[key]))
-        if self.stream:
-            return self.stream.wait_until(find, f"{pattern!r} in its status", every=RATE_HZ // 3)
         end_s = time.monotonic() + HANG_S
-        while not (found := find()):
+        while not (found := re.search(pattern, str(self.feed()[key]))):
             if time.monotonic() > end_s:
                 self.test.fail(f"{self.name}: {pattern!r} in its status: not within {HANG_S:g} s\n" + self.test.logs())
             time.sleep(0.3)

@@ -2,7 +2,6 @@
 // usage: fleet_page.mjs CHROMIUM FOLDER_OF_BROWSER_TOOLS FOLDER_OF_SCREENSHOTS ADDRESS PROCESS_OF_THE_WALL_FOYER
 import assert from "node:assert/strict";
 import fs from "node:fs";
-import { createRequire } from "node:module";
 import path from "node:path";
 
 import { begin } from "../e2e/chromium.mjs";
@@ -24,12 +23,7 @@ try {
   await row("foyer").getByText(/zuletzt gehört vor/).waitFor();
   await page.locator("#attention").getByText(/node foyer: no word for/).waitFor();
   await page.locator("#fleet-card").screenshot({ path: path.join(screenshots, "silent.png") });
-  const axe = fs.readFileSync(createRequire(path.join(tools, "package.json")).resolve("axe-core/axe.min.js"), "utf8");
-  const faults = await page.evaluate(async (source) => {
-    Object.assign(window, { axe: new Function(source + "; return axe;")() });
-    return (await window.axe.run({ resultTypes: ["violations"] })).violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html)}`);
-  }, axe);
-  assert.deepEqual(faults, []);
+  assert.deepEqual(await world.accessibilityFaults(page), []);
   assert.deepEqual(page.complaints, []);
 } finally {
   await world.end();

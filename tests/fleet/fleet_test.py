@@ -266,8 +266,7 @@ class Fleet(fleet.FleetTest):
 
     def find_history(self, daemon):
         """The seconds of the last day that each node was heard, as JetStream has them; None if they cannot be read now."""
-        done = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--history", "--config", daemon.file, "--json"], timeout=HANG_S,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        done = daemon.run("fleet", "--history", "--config", daemon.file, "--json")
         self.assertIn(done.returncode, (0, 2), done.stderr)
         if done.returncode == 2:
             return None
@@ -295,8 +294,9 @@ class Fleet(fleet.FleetTest):
         cluster.nodes[2].start()
         # Nothing else is handed in within these ten minutes: these are seconds in which the server was away.
         self.wait_for_history(leader, "room", before_s + away_s - 2)
-        table = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--history", "--config", follower.file], timeout=HANG_S,
-                               stdout=subprocess.PIPE, text=True, check=True).stdout
+        done = follower.run("fleet", "--history", "--config", follower.file)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        table = done.stdout
         self.assertRegex(table, r"(?m)^room\n  yuragi \S+\n.*\n.* heard .*\n(.*\n)*?  \d\d:00 +\d+ min +\d+\.\d m/s ")
         self.assertRegex(table, r"  \d\d:00 +no word")
         before_s = self.history(follower)["roof"]
@@ -307,9 +307,7 @@ class Fleet(fleet.FleetTest):
 
         def find():
             """The follower in the list of a leader that has never heard it."""
-            listed = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--config", leader.file, "--json"], timeout=HANG_S,
-                                    stdout=subprocess.PIPE, check=False).stdout
-            return [node for node in json.loads(listed or '{"nodes": []}')["nodes"] if node["node"] == "room" and node["is_silent"]]
+            return [node for node in leader.nodes() if node["node"] == "room" and node["is_silent"]]
         room, = leader.stream.wait_until(find, "the node that is gone, in the leader's list", every=RATE_HZ)
         self.assertGreater(room["last_word_s"], 5.0)
         add_row("history: the server was away; the leader is started again")
@@ -317,8 +315,7 @@ class Fleet(fleet.FleetTest):
     def test_a_history_needs_jetstream(self):
         server = Server(self, "server")
         leader = Daemon(self, "leader", lead=server.address)
-        done = subprocess.run([os.path.join(self.programs, "yuragi"), "fleet", "--history", "--config", leader.file], timeout=HANG_S,
-                              stderr=subprocess.PIPE, text=True, check=False)
+        done = leader.run("fleet", "--history", "--config", leader.file)
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, "JetStream does not reply: .*`jetstream")
         self.assertEqual(leader.feed()["trouble"], "")
@@ -359,8 +356,7 @@ class Fleet(fleet.FleetTest):
         for one in (follower, other):
             self.wait_until_equal(leader, one)
             one.wait_for_feed("sends", "the same picture as its leader")
-        command = [os.path.join(self.programs, "yuragi"), "fleet", "--config", follower.file, "--json"]
-        nodes = json.loads(subprocess.run(command, timeout=HANG_S, stdout=subprocess.PIPE, check=False).stdout)["nodes"]
+        nodes = follower.nodes()
         self.assertEqual([node["node"] for node in nodes], ["roof", "room", "stand-by"])
         self.assertEqual([node["part"] for node in nodes][0], "leads")
 
