@@ -62,8 +62,6 @@ class SceneList {
 
   std::size_t size() const noexcept { return entries_.size(); }
   StagedScene& operator[](std::size_t index) noexcept { return *entries_[index].staged; }
-  /// How many of them are of the roster.
-  std::size_t staying() const noexcept { return roster_->scenes.size(); }
 
   std::span<const pose::Skeleton* const> skeletons() const noexcept { return skeletons_; }
   std::span<const pose::Pose* const> poses() const noexcept { return poses_; }

@@ -262,10 +262,9 @@ void add_fleet(CLI::App& app) {
       "Exit code 0: all is well; 1: a node is silent or needs attention; 2: no leader replies.\n"
       "--history: the last 24 hours of each node, by hour of UTC, as JetStream of nats-server has stored them.\n"
       "  yuragi fleet --config wall.toml\n"
-      "--json: nodes (a list: node, is_silent, last_word_s, software, part, wind_m_s, wind_from_deg, tick, behind_s,\n"
-      "clock_offset_s or null, attention); with --history: nodes (a list: node, hours, a list: begin_utc_s, heard_s, "
-      "and if that is not 0,\n"
-      "mean_wind_m_s, max_wind_m_s, max_behind_s, attention_s, attention, software, part).");
+      "--json: nodes (a list: node, software, part, wind_m_s, wind_from_deg, tick, behind_s, clock_offset_s or null,\n"
+      "attention, last_word_s, is_silent); with --history: nodes (a list: node, hours, a list: begin_utc_s, heard_s,\n"
+      "and if that is not 0, mean_wind_m_s, max_wind_m_s, max_behind_s, attention_s, attention, software, part).");
   auto options = std::make_shared<FleetOptions>();
   command->add_option("--config,-c", options->config_file, "a configuration of one of them (TOML)")
       ->required()

@@ -19,12 +19,8 @@ namespace {
 constexpr std::size_t kMaxAttention = 5, kMaxText_bytes = 300;
 constexpr std::size_t kNodesInMessage = 50;
 
-nlohmann::json number_or_null(const std::optional<double>& number) {
-  return number ? nlohmann::json(*number) : nlohmann::json();
-}
-
-nlohmann::json json_of(const NodeReport& report) {
-  nlohmann::json attention = nlohmann::json::array();
+nlohmann::ordered_json json_of(const NodeReport& report) {
+  nlohmann::ordered_json attention = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < std::min(report.attention.size(), kMaxAttention); ++i)
     attention.push_back(shortened(report.attention[i], kMaxText_bytes / 4));
   return {{"node", report.name},
@@ -34,8 +30,19 @@ nlohmann::json json_of(const NodeReport& report) {
           {"wind_from_deg", report.wind_from_deg},
           {"tick", report.tick},
           {"behind_s", report.behind_s},
-          {"clock_offset_s", number_or_null(report.clock_offset_s)},
+          {"clock_offset_s", report.clock_offset_s ? nlohmann::ordered_json(*report.clock_offset_s) : nullptr},
           {"attention", std::move(attention)}};
+}
+
+nlohmann::ordered_json json_of(const std::vector<Node>& nodes) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Node& node : nodes) {
+    nlohmann::ordered_json json = json_of(node.report);
+    json["last_word_s"] = node.last_word_s;
+    json["is_silent"] = node.is_silent;
+    all.push_back(std::move(json));
+  }
+  return all;
 }
 
 Result<NodeReport, Failure> report_of(const nlohmann::json& json) {
@@ -122,14 +129,7 @@ Result<NodeReport, Failure> decode_node_report(std::span<const std::uint8_t> byt
 }
 
 std::vector<std::uint8_t> list_bytes(const NodeList& list) {
-  nlohmann::json nodes = nlohmann::json::array();
-  for (const Node& node : list.nodes) {
-    nlohmann::json json = json_of(node.report);
-    json["last_word_s"] = node.last_word_s;
-    json["silent"] = node.is_silent;
-    nodes.push_back(std::move(json));
-  }
-  return bytes_of({{"all", list.all}, {"first", list.first}, {"nodes", std::move(nodes)}});
+  return bytes_of({{"all", list.all}, {"first", list.first}, {"nodes", json_of(list.nodes)}});
 }
 
 Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes) {
@@ -146,7 +146,7 @@ Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes) 
     auto report = report_of(one);
     if (!report) return report.error();
     const auto last_word_s = number_at(one, "last_word_s", 1e9);
-    const auto is_silent = one.find("silent");
+    const auto is_silent = one.find("is_silent");
     if (!last_word_s || is_silent == one.end() || !is_silent->is_boolean()) return bad_data("has a node that is none");
     list.nodes.push_back(
         {.report = std::move(*report), .last_word_s = *last_word_s, .is_silent = is_silent->get<bool>()});
@@ -155,22 +155,7 @@ Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes) 
 }
 
 nlohmann::ordered_json nodes_json(const std::vector<Node>& nodes) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const Node& node : nodes) {
-    const NodeReport& report = node.report;
-    all.push_back({{"node", report.name},
-                   {"is_silent", node.is_silent},
-                   {"last_word_s", node.last_word_s},
-                   {"software", report.software},
-                   {"part", report.part},
-                   {"wind_m_s", report.wind_m_s},
-                   {"wind_from_deg", report.wind_from_deg},
-                   {"tick", report.tick},
-                   {"behind_s", report.behind_s},
-                   {"clock_offset_s", number_or_null(report.clock_offset_s)},
-                   {"attention", report.attention}});
-  }
-  return {{"nodes", std::move(all)}};
+  return {{"nodes", json_of(nodes)}};
 }
 
 std::string nodes_text(const std::vector<Node>& nodes) {

@@ -75,8 +75,8 @@ Result<NodeReport, Failure> decode_node_report(std::span<const std::uint8_t> byt
 std::vector<std::uint8_t> list_bytes(const NodeList& list);
 Result<NodeList, Failure> decode_node_list(std::span<const std::uint8_t> bytes);
 
-/// For people's programs: {"nodes": [{"node", "is_silent", "last_word_s", "software", "part", "wind_m_s",
-/// "wind_from_deg", "tick", "behind_s", "clock_offset_s" (or null), "attention"}]}.
+/// For people's programs: {"nodes": [{"node", "software", "part", "wind_m_s", "wind_from_deg", "tick", "behind_s",
+/// "clock_offset_s" (or null), "attention", "last_word_s", "is_silent"}]}.
 nlohmann::ordered_json nodes_json(const std::vector<Node>& nodes);
 std::string nodes_text(const std::vector<Node>& nodes);
 

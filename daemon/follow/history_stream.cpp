@@ -64,11 +64,11 @@ StreamRequest make_stream(const std::string& channel, int replicas) {
 
 StreamRequest read_stream(const std::string& channel, const std::string& inbox, std::uint64_t rate_bit_s) {
   const std::string name = history_stream_of(channel);
-  nlohmann::json config = {{"deliver_subject", inbox},
-                           {"deliver_policy", "all"},
-                           {"ack_policy", "none"},
-                           {"replay_policy", "instant"},
-                           {"inactive_threshold", kReaderGone_ns}};
+  nlohmann::ordered_json config = {{"deliver_subject", inbox},
+                                   {"deliver_policy", "all"},
+                                   {"ack_policy", "none"},
+                                   {"replay_policy", "instant"},
+                                   {"inactive_threshold", kReaderGone_ns}};
   if (rate_bit_s > 0) config["rate_limit_bps"] = rate_bit_s;
   return {.subject = "$JS.API.CONSUMER.CREATE." + name,
           .bytes = bytes_of({{"stream_name", name}, {"config", std::move(config)}})};

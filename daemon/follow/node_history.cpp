@@ -32,7 +32,7 @@ std::string short_line(const std::string& text) {
   return shortened(text, kMaxText_bytes / 4);
 }
 
-nlohmann::json json_of(const HistoryEntry& entry) {
+nlohmann::ordered_json json_of(const HistoryEntry& entry) {
   return {{"begin_utc_s", entry.begin_utc_s},
           {"seconds", entry.seconds},
           {"mean_wind_m_s", entry.mean_wind_m_s},
@@ -89,7 +89,7 @@ void HistoryEntry::add(const HistoryEntry& later) {
 }
 
 std::vector<std::uint8_t> encode(const NodeEntries& entries) {
-  nlohmann::json all = nlohmann::json::array();
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const HistoryEntry& entry : entries.entries) all.push_back(json_of(entry));
   return bytes_of({{"node", entries.node}, {"entries", std::move(all)}});
 }

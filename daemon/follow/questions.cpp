@@ -112,7 +112,7 @@ Bytes with_kind(Kind kind, const Bytes& bytes) {
 }  // namespace
 
 Bytes encode(const Question& question) {
-  nlohmann::json json = {{"ask", word_of(question.about)}};
+  nlohmann::ordered_json json = {{"ask", word_of(question.about)}};
   if (question.epoch != 0) json["epoch"] = question.epoch;
   if (question.about == Question::About::kTicks) {
     json["from"] = question.from;

@@ -63,7 +63,7 @@ inline std::optional<std::string> text_at(const nlohmann::json& object, const ch
   return found == object.end() ? std::nullopt : short_text(*found, most_bytes);
 }
 
-inline std::vector<std::uint8_t> bytes_of(const nlohmann::json& json) {
+inline std::vector<std::uint8_t> bytes_of(const nlohmann::ordered_json& json) {
   const std::string text = json_text(json);
   return {text.begin(), text.end()};
 }

@@ -11,7 +11,6 @@ namespace yuragi::drivers::bus {
 // 2013), made and taken apart by the resolver of the C library. A request from a port other than 5353 is answered to
 // that port only (RFC 6762, sections 5.1 and 6.7), so that no service of this machine is needed.
 
-inline constexpr std::uint16_t kMulticastDnsPort = 5353;
 inline constexpr const char* kMulticastDnsGroup = "224.0.0.251";
 
 /// One announced service.

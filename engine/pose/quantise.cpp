@@ -62,12 +62,6 @@ void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units, s
                               .units = units.data()});
 }
 
-void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) noexcept {
-  assert(angle_rad.size() == units.size());
-  const std::size_t count = units.size();
-  for (std::size_t i = 0; i < count; ++i) angle_rad[i] = static_cast<float>(units[i]) * kBendStep_rad;
-}
-
 void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units,
                    std::optional<SimdRow> row) noexcept {
   assert(way_m.size() == units.size());

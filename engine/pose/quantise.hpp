@@ -22,9 +22,6 @@ inline constexpr float kSlopeStep = 4.0F / 32767.0F;
 void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units,
               std::optional<SimdRow> row = std::nullopt) noexcept;
 
-/// And back. Both spans have the same size. Thread-safe and realtime-safe: yes.
-void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) noexcept;
-
 /// Ways (metres), or slopes, to units of step_m (above 0), in the same manner. Thread-safe and realtime-safe: yes.
 void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::int16_t> units,
                    std::optional<SimdRow> row = std::nullopt) noexcept;

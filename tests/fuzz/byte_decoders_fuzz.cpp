@@ -74,8 +74,7 @@ void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
   static_cast<void>(decode::hid::encode_wmr300_acknowledgement(bytes));
   for (const auto model : {decode::hid::FineOffsetModel::kWh1080, decode::hid::FineOffsetModel::kWh3080}) {
     if (const auto fixed = decode::hid::decode_fineoffset_fixed_block(bytes, model)) {
-      require(decode::hid::previous_fineoffset_position(fixed->current_position, model) >=
-              decode::hid::kFineOffsetFirstRecord);
+      require(fixed->current_position >= decode::hid::kFineOffsetFirstRecord);
     }
   }
   if (!is_mended) return;

@@ -41,13 +41,4 @@ void GridSheet::draw() const {
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
-void GridSheet::draw_shell(std::size_t shell) const {
-  glBindVertexArray(array_.name());
-  const auto count = index_count_ / static_cast<GLsizei>(layout_.shells);
-  // OpenGL takes an offset in a buffer as a pointer.
-  // NOLINTNEXTLINE(performance-no-int-to-ptr)
-  const auto* const at = reinterpret_cast<const void*>(shell * static_cast<std::size_t>(count) * sizeof(std::uint32_t));
-  glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, at);
-}
-
 }  // namespace yuragi::viewer::looks

@@ -25,9 +25,6 @@ class GridSheet {
   /// Draws all triangles with the program in use.
   void draw() const;
 
-  /// Draws those of one shell.
-  void draw_shell(std::size_t shell) const;
-
   /// One more number for each point: attribute 6.
   void set_level(std::span<const float> levels);
 

@@ -44,12 +44,6 @@ std::vector<Order> tile_order(const pose::StrandSkeleton& strands) {
   return order;
 }
 
-glm::vec3 leaning(const glm::vec2& lean) {
-  const float angle = glm::length(lean);
-  const float sine = angle > 1e-4F ? std::sin(angle) / angle : 1.0F;
-  return {lean.x * sine, std::cos(angle), lean.y * sine};
-}
-
 /// The lean of a direction, and that of the tip at rest.
 glm::vec2 lean_of(const glm::vec3& direction) {
   const glm::vec2 level(direction.x, direction.z);
@@ -64,11 +58,6 @@ glm::vec2 tip_lean(const pose::StrandSkeleton& strands, std::size_t i) {
 }
 
 }  // namespace
-
-glm::vec3 arc_point(const glm::vec2& foot, const glm::vec2& turned, float t) {
-  const float half_2 = 0.25F * t * t * glm::dot(turned, turned);
-  return t * (1.0F - half_2 * (1.0F / 6.0F - half_2 / 120.0F)) * leaning(foot + turned * (0.5F * t));
-}
 
 StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& thinning, const GrassDetail& detail)
     : thinning_(thinning), detail_(detail) {

@@ -15,11 +15,6 @@
 
 namespace yuragi::viewer::meshes {
 
-/// The point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` (toward east and south,
-/// radians from upright) and turns by `turned` up to its tip: a strand without its joints. The shaders have the same
-/// (blade.part.glsl); test: within a few hundredths of the forward kinematics.
-glm::vec3 arc_point(const glm::vec2& foot, const glm::vec2& turned, float t);
-
 /// A streamed blade of grass at rest, in the shader's layout.
 struct TiledBlade {
   glm::vec3 root_m{0.0F};

@@ -23,16 +23,6 @@ glm::dmat3 unrotated(int rotation_deg) {
   }
 }
 
-/// The light of a strip at `into` of its width from the side.
-double ramp(double into) {
-  if (into >= 1.0) return 1.0;
-  const double from_side = std::max(into, 0.0);
-  return from_side < 0.5 ? 2.0 * from_side * from_side : 1.0 - 2.0 * (1.0 - from_side) * (1.0 - from_side);
-}
-double ramp(double distance, double width) {
-  return width > 0.0 ? ramp(distance / width) : 1.0;
-}
-
 }  // namespace
 
 glm::dmat3 square_to(const output::Corners& corners) {
@@ -57,11 +47,6 @@ glm::dmat3 monitor_to_crop(const output::Window& window) {
 glm::dvec2 mapped(const glm::dmat3& map, const glm::dvec2& place) {
   const glm::dvec3 at = map * glm::dvec3(place, 1.0);
   return glm::dvec2(at) / at.z;
-}
-
-double blend_light(const glm::dvec2& place, const output::Sides& blend) {
-  return ramp(place.x, blend.left) * ramp(1.0 - place.x, blend.right) * ramp(place.y, blend.top) *
-         ramp(1.0 - place.y, blend.bottom);
 }
 
 output::Sides blend_of_crop(const output::Window& window) {

@@ -23,11 +23,6 @@ glm::dmat3 monitor_to_crop(const output::Window& window);
 /// A homogeneous map, applied.
 glm::dvec2 mapped(const glm::dmat3& map, const glm::dvec2& place);
 
-/// The part of the light at a place of the crop that the window shows, 0 to 1. In a strip of the width `blend` (parts
-/// of the crop) it falls so that the neighbour's strip makes it 1 again. (P. Bourke, "Edge blending using commodity
-/// projectors", 2004, with exponent 2.)
-double blend_light(const glm::dvec2& place, const output::Sides& blend);
-
 /// The blend's widths as parts of the window's crop.
 output::Sides blend_of_crop(const output::Window& window);
 

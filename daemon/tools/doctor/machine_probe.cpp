@@ -34,7 +34,8 @@ constexpr double kSecondsPerDay = 86400.0;
 constexpr auto kVersionTimeout = std::chrono::seconds(5);
 constexpr std::uint64_t kFilesOfTheDaemon = 64;  // sockets, timers, the recording, libraries
 constexpr std::uint64_t kFilesOfASensor = 8;
-constexpr std::uint64_t kFilesOfThePage = 224;  // WebSockets, and requests beside them
+constexpr std::uint64_t kFilesOfThePage =
+    224;  // its WebSockets (daemon/web/sockets.hpp) and newcomers (daemon/http/server.hpp)
 constexpr std::size_t kMaxUserGroups = 256;
 
 std::string user_name() {

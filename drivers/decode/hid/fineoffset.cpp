@@ -64,14 +64,6 @@ Result<FineOffsetFixedBlock, Refusal> decode_fineoffset_fixed_block(ByteSpan blo
   return fixed;
 }
 
-std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetModel model) noexcept {
-  const auto length = static_cast<std::uint32_t>(model);
-  const std::uint32_t records = (kMemoryEnd - kFineOffsetFirstRecord) / length;
-  const std::uint32_t last = kFineOffsetFirstRecord + (records - 1) * length;
-  if (position < kFineOffsetFirstRecord + length) return static_cast<std::uint16_t>(last);
-  return static_cast<std::uint16_t>(position - length);
-}
-
 Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept {
   if (const auto refusal = record_refusal(record)) return *refusal;
   if ((record[15] & kNoContact) != 0) return Refusal::kInvalid;

@@ -55,9 +55,6 @@ std::array<std::uint8_t, 8> encode_fineoffset_read(std::uint16_t address) noexce
 /// position outside the ring or between two records). Thread-safe and realtime-safe: yes.
 Result<FineOffsetFixedBlock, Refusal> decode_fineoffset_fixed_block(ByteSpan block, FineOffsetModel model) noexcept;
 
-/// The position of the record before `position`: for the first, the ring's last one.
-std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetModel model) noexcept;
-
 /// The wind of one record (16 bytes, 20, or the whole block of 32 that begins with it), or the first thing that is
 /// wrong: kTooShort, kMalformed (longer, or memory that was never written), kInvalid (no contact, or no value),
 /// kImplausible. A direction that is no point of the compass is left out, and the reading uncertain. Thread-safe and

@@ -18,9 +18,8 @@ namespace yuragi::drivers::decode::network {
 //
 // The name is that of its own wireless network, with its version: "GW1000-WIFIFD32 V1.6.8".
 
-/// The question for gateways, and the UDP port that it goes to.
+/// The question for gateways.
 inline constexpr std::array<std::uint8_t, 5> kEcowittSearch = {0xFF, 0xFF, 0x12, 0x03, 0x15};
-inline constexpr std::uint16_t kEcowittSearchPort = 46000;
 
 /// A gateway that has answered.
 struct EcowittGateway {

@@ -34,7 +34,6 @@ struct Mcc1208Transfer {
 
 inline constexpr std::uint8_t kMcc1208Inputs = 8;
 inline constexpr Mcc1208Transfer kMcc1208ReadCounter = {0xC0, 0x20, 0, 0, 4};
-inline constexpr Mcc1208Transfer kMcc1208ResetCounter = {0x40, 0x20, 0, 0, 0};
 
 /// Asks for the value of input `channel`, or for its calibration.
 constexpr Mcc1208Transfer mcc1208_read_analog(std::uint8_t channel) noexcept {

@@ -36,7 +36,7 @@ struct WindFieldSettings {
 /// power of VonKarmanModes, carried by the mean wind along its direction at its speed.
 ///
 /// A point has von Karman's spectrum of (U, TI, L) for u, the transverse one for v and w; two points across the wind
-/// have von_karman_coherence(). Waves longer than the tile are the same everywhere in it: a 1-D noise along the wind's
+/// have the coherence of W13. Waves longer than the tile are the same everywhere in it: a 1-D noise along the wind's
 /// path. Waves shorter than two samples are missing, and variance_m2_s2() is that of the others. The tile repeats every
 /// samples x spacing; a frozen one repeats after that distance. The field is not free of divergence.
 ///

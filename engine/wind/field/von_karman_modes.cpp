@@ -7,12 +7,6 @@
 #include "engine/noise/von_karman_corner.hpp"
 
 namespace yuragi::wind::field {
-namespace {
-
-constexpr double kGammaOfFiveSixths = 1.1287870299081257;
-
-}  // namespace
-
 VonKarmanModes::VonKarmanModes(turbulence::WindComponent component, double sigma_m_s, double length_m) noexcept
     : component_(component) {
   // The scale of v and w along the wind is half of that of u in the same turbulence.
@@ -39,16 +33,6 @@ double VonKarmanModes::space_density(double along_rad_m, double across_rad_m, do
                                                                               : up_rad_m;
   const double k_squared = along_rad_m * along_rad_m + across_rad_m * across_rad_m + up_rad_m * up_rad_m;
   return scale_ * (k_squared - own_rad_m * own_rad_m) * std::pow(kappa_squared_ + k_squared, -17.0 / 6.0);
-}
-
-double von_karman_coherence(double along_rad_m, double distance_m, double length_m) noexcept {
-  const double kappa = 1.0 / (noise::kVonKarmanCorner * length_m);
-  const double x = std::abs(distance_m) * math::length(along_rad_m, kappa);
-  if (x < 1e-9) return 1.0;
-  if (x > 500.0) return 0.0;
-  return math::power_of_two(1.0 / 6.0) / kGammaOfFiveSixths *
-         (std::pow(x, 5.0 / 6.0) * std::cyl_bessel_k(5.0 / 6.0, x) -
-          0.5 * std::pow(x, 11.0 / 6.0) * std::cyl_bessel_k(1.0 / 6.0, x));
 }
 
 }  // namespace yuragi::wind::field

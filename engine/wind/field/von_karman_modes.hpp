@@ -7,7 +7,7 @@ namespace yuragi::wind::field {
 /// The distribution of the variance of one component of isotropic turbulence over wave vectors: von Karman's, in three
 /// dimensions and, for a level plane through it, in two. A straight line along the wind through it has von Karman's
 /// spectrum (WindSpectrum: the longitudinal one for u, the transverse one for v and w), and two lines side by side have
-/// the coherence that goes with it (von_karman_coherence).
+/// the coherence that goes with it (engine/wind/model.md W13).
 ///
 /// With the energy E(k) ~ k^4 / (kappa^2 + k^2)^(17/6), a component has the density E(k) (k^2 - k_own^2) / (4 pi k^4),
 /// k_own the part of k along its own axis. Source: von Karman 1948, Progress in the statistical theory of turbulence;
@@ -30,11 +30,5 @@ class VonKarmanModes {
   double kappa_squared_;
   double scale_;
 };
-
-/// The coherence of u (the root of the squared one, with its sign) at two places `distance_m` apart across the wind, in
-/// that turbulence, at the wavenumber `along_rad_m` = 2 pi f / U; `length_m`: integral length scale of u along the
-/// wind. For distances small against L it is within 0.09 of Davenport's exp(-7 f d / U), and 0.19 of exp(-10 f d / U).
-/// Source: Harris 1971, The nature of the wind; IEC 61400-1, annex B (the coherence of the isotropic model).
-double von_karman_coherence(double along_rad_m, double distance_m, double length_m) noexcept;
 
 }  // namespace yuragi::wind::field

@@ -203,9 +203,4 @@ double WindSpectrum::density_m2_s2_hz(double frequency_hz) const noexcept {
   return scale_m2_s2_ * time_s_ * shape_(frequency_hz * time_s_);
 }
 
-double iec_kaimal_energy_m2_s2(double sigma_m_s, double time_scale_s, double from_hz, double to_hz) noexcept {
-  const auto above = [time_scale_s](double f) { return std::pow(1.0 + 6.0 * f * time_scale_s, -2.0 / 3.0); };
-  return sigma_m_s * sigma_m_s * (above(from_hz) - above(to_hz));
-}
-
 }  // namespace yuragi::wind::turbulence

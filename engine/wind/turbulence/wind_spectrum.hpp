@@ -92,8 +92,4 @@ class WindSpectrum {
   double variance_m2_s2_ = 0.0;
 };
 
-/// The energy of the IEC's Kaimal spectrum between two frequencies (0 to infinity) in closed form, of a component with
-/// standard deviation `sigma_m_s` and time scale T = L / U.
-double iec_kaimal_energy_m2_s2(double sigma_m_s, double time_scale_s, double from_hz, double to_hz) noexcept;
-
 }  // namespace yuragi::wind::turbulence

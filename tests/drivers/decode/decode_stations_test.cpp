@@ -315,10 +315,7 @@ TEST(FineOffsetFixedBlock, OfARealConsoleDecodes) {
   EXPECT_EQ(fixed->current_position, 0x56D0);
 }
 
-TEST(FineOffsetRing, GoesRoundBackwards) {
-  EXPECT_EQ(hid::previous_fineoffset_position(0x110, hid::FineOffsetModel::kWh1080), 0x100);
-  EXPECT_EQ(hid::previous_fineoffset_position(0x100, hid::FineOffsetModel::kWh1080), 0xFFF0);
-  EXPECT_EQ(hid::previous_fineoffset_position(0x100, hid::FineOffsetModel::kWh3080), 0xFFEC);
+TEST(FineOffsetRead, AsksForAPosition) {
   EXPECT_EQ(bytes_from(hid::encode_fineoffset_read(0x56D0)), test::hex_bytes("a1 56 d0 20 a1 56 d0 20"));
 }
 

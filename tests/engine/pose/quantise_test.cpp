@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -22,6 +23,12 @@ std::int16_t quantised(float angle_rad) {
   std::int16_t unit = 0;
   quantise({&angle_rad, 1}, {&unit, 1});
   return unit;
+}
+
+/// As a client does it.
+void dequantise(std::span<const std::int16_t> units, std::span<float> angle_rad) {
+  std::ranges::transform(units, angle_rad.begin(),
+                         [](std::int16_t unit) { return static_cast<float>(unit) * kBendStep_rad; });
 }
 
 TEST(QuantiseTest, HasPiAtTheEndOfItsRange) {

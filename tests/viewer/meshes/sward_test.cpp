@@ -180,6 +180,19 @@ TEST_F(StrandTilesTest, DrawFewerFarAwayAndNoneBehindTheCamera) {
   EXPECT_EQ(drawn({{0.0, 0.5, -30.0}, 0.0, 2.0, 5.0}), 0U);
 }
 
+glm::vec3 leaning(const glm::vec2& lean) {
+  const float angle = glm::length(lean);
+  const float sine = angle > 1e-4F ? std::sin(angle) / angle : 1.0F;
+  return {lean.x * sine, std::cos(angle), lean.y * sine};
+}
+
+/// The point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` (toward east and south,
+/// radians from upright) and turns by `turned` up to its tip: a strand without its joints, as blade.part.glsl has it.
+glm::vec3 arc_point(const glm::vec2& foot, const glm::vec2& turned, float t) {
+  const float half_2 = 0.25F * t * t * glm::dot(turned, turned);
+  return t * (1.0F - half_2 * (1.0F / 6.0F - half_2 / 120.0F)) * leaning(foot + turned * (0.5F * t));
+}
+
 TEST_F(StrandTilesTest, ArcsAreWhatTheForwardKinematicsSays) {
   pose::JointPositions joints(strands_);
   for (const double bend_rad : {0.0, 0.4, 1.1}) {

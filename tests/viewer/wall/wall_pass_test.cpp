@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/viewer/wall/blend_light.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/wall/test_card.hpp"
 #include "viewer/wall/window_map.hpp"

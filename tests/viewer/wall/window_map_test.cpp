@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/viewer/wall/blend_light.hpp"
+
 namespace yuragi::viewer::wall {
 namespace {
 

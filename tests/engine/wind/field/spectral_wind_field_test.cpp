@@ -13,7 +13,7 @@
 
 #include "engine/fft/real_fft.hpp"
 #include "engine/wind/field/von_karman_modes.hpp"
-#include "engine/wind/turbulence/wind_profile.hpp"
+#include "tests/support/wind_coherence.hpp"
 
 namespace yuragi::wind::field {
 namespace {
@@ -206,7 +206,7 @@ TEST(SpectralWindField, CoherenceAcrossTheWindFallsAsDavenports) {
       const double along_rad_m = 2.0 * std::numbers::pi * reduced / distance_m;
       EXPECT_NEAR(coherence, von_karman_coherence(along_rad_m, distance_m, kFine.length_m), 0.08)
           << apart << ", " << reduced;
-      EXPECT_NEAR(coherence, turbulence::davenport_coherence(reduced, distance_m, distance_m, 7.0), 0.15)
+      EXPECT_NEAR(coherence, davenport_coherence(reduced, distance_m, distance_m, 7.0), 0.15)
           << apart << ", " << reduced;
     }
   }

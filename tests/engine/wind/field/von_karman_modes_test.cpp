@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/wind/turbulence/wind_profile.hpp"
+#include "tests/support/wind_coherence.hpp"
 
 namespace yuragi::wind::field {
 namespace {
@@ -96,8 +96,8 @@ TEST(VonKarmanCoherence, IsNearDavenports) {
   for (double reduced = 0.005; reduced < 2.0; reduced *= 1.1) {
     const double along_rad_m = 2.0 * std::numbers::pi * reduced / kDistance_m;
     const double coherence = von_karman_coherence(along_rad_m, kDistance_m, kModesLength_m);
-    EXPECT_NEAR(coherence, turbulence::davenport_coherence(reduced, kDistance_m, kDistance_m, 7.0), 0.095) << reduced;
-    EXPECT_NEAR(coherence, turbulence::davenport_coherence(reduced, kDistance_m, kDistance_m, 10.0), 0.2) << reduced;
+    EXPECT_NEAR(coherence, davenport_coherence(reduced, kDistance_m, kDistance_m, 7.0), 0.095) << reduced;
+    EXPECT_NEAR(coherence, davenport_coherence(reduced, kDistance_m, kDistance_m, 10.0), 0.2) << reduced;
   }
 }
 

@@ -12,10 +12,10 @@
 
 #include "engine/fft/real_fft.hpp"
 #include "engine/noise/von_karman_corner.hpp"
-#include "engine/wind/field/von_karman_modes.hpp"
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/turbulence/von_karman_integrals.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
+#include "tests/support/wind_coherence.hpp"
 
 namespace yuragi::wind::turbulence {
 namespace {
@@ -203,7 +203,7 @@ TEST(GustNoise, IsThePlaneOfIsotropicTurbulenceFromAMetreToAKilometre) {
       const double k_rad_m =
           2.0 * std::numbers::pi * static_cast<double>(k) / (GustLines::kSamples * GustLines::kStep_m);
       for (std::size_t side = 0; side < kBeside_m.size(); ++side) {
-        coherent[side] += u * field::von_karman_coherence(k_rad_m, kBeside_m[side], kLength_m);
+        coherent[side] += u * von_karman_coherence(k_rad_m, kBeside_m[side], kLength_m);
       }
     }
     for (std::size_t component = 0; component < 2; ++component) {
