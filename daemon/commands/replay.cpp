@@ -34,6 +34,7 @@ struct ReplayOptions {
   bool is_paused = false;
   bool as_recorded = false;
   bool is_to_stdout = false;
+  std::filesystem::path states_folder;
 };
 
 /// The scenes have already moved in the wind for this long when a client first sees them.
@@ -101,7 +102,7 @@ tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options, 
                                                   const tools::offline::UseTick& use) {
   return tools::offline::replay_in_lockstep(
              config, options.file, {.playback = options.playback, .seam_s = options.seam_s, .lead_s = lead_of(options)},
-             options.run.duration_s.value_or(0.0), progress, use)
+             options.run.duration_s.value_or(0.0), progress, use, options.states_folder)
       .value();
 }
 
@@ -180,6 +181,9 @@ void replay(const ReplayOptions& options) {
   if (options.is_to_stdout && options.rate != "max") {
     throw ExitError(kExitUsage, "--to-stdout waits for its reader, not for a clock: add --rate max");
   }
+  if (!options.states_folder.empty() && (options.rate != "max" || options.as_recorded || options.playback.loop)) {
+    throw ExitError(kExitUsage, "--states is for --rate max, without --as-recorded and --loop");
+  }
   if (options.as_recorded && options.rate != "max") {
     const sensing::RecordedInstallation installation = installation_of(options, parse_rate(options.rate));
     service::Service(installation.config, {.record = {},
@@ -250,6 +254,12 @@ void add_replay(CLI::App& app) {
                     "with --rate max: write every tick to standard output, as a daemon streams it, and wait for the "
                     "reader (yuragi-viewer --render reads it). The 15 s before --start move the scenes, and are not "
                     "written");
+  command
+      ->add_option("--states", options->states_folder,
+                   "with --rate max: the poses are those of a replay from the recording's beginning, wherever this one "
+                   "begins; the scenes' state at each minute is kept in this folder, so that the next replay need not "
+                   "compute what came before")
+      ->type_name("FOLDER");
   command->add_flag("--paused", options->is_paused, "start paused, at the first reading (see `yuragi player`)");
   command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");

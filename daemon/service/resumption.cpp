@@ -12,8 +12,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "daemon/animation/motion_made_of.hpp"
 #include "engine/base/snapshot.hpp"
-#include "engine/math/philox.hpp"
 #include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::service {
@@ -25,21 +25,6 @@ constexpr std::size_t kMaxMotion_bytes = 1UL << 30;
 constexpr auto kOwner = fs::perms::owner_read | fs::perms::owner_write;
 
 }  // namespace
-
-std::uint64_t motion_made_of(settings::Config config, std::size_t sensors) {
-  settings::Config moving;
-  for (const char* const table : {"", "animation", "wind", "shaping"})
-    moving.by_name.emplace(table, std::move(config.by_name.at(table)));
-  moving.by_name.at("animation").set("threads", std::int64_t{1});
-  moving.sensors = std::move(config.sensors);
-  moving.sensors.resize(std::min(sensors, moving.sensors.size()));
-  for (settings::SensorConfig& sensor : moving.sensors) {
-    sensor.values = {};
-    sensor.by_name.erase(std::string(settings::kCalibrationTable));
-  }
-  moving.scenes = std::move(config.scenes);
-  return math::stream_id(settings::to_toml(moving));
-}
 
 bool Resumption::load(const settings::Config& config, Motion motion, MonoTime now) const {
   std::error_code error;
@@ -59,10 +44,11 @@ bool Resumption::load(const settings::Config& config, Motion motion, MonoTime no
   };
   if (!snapshot) return refuse(snapshot.error().message);
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(snapshot->data()), snapshot->size());
-  auto loaded = load_snapshot(motion, motion_made_of(config, config.sensors.size()), bytes, now);
+  auto loaded = load_snapshot(motion, animation::motion_made_of(config, config.sensors.size()), bytes, now);
   // The estimator has the recording of last resort behind all sensors: it would take the place of an added one.
   for (std::size_t fewer = config.sensors.size(); !loaded && !config.wind.fallback && --fewer > 0;) {
-    if (auto before = load_snapshot(motion, motion_made_of(config, fewer), bytes, now)) loaded = std::move(before);
+    if (auto before = load_snapshot(motion, animation::motion_made_of(config, fewer), bytes, now))
+      loaded = std::move(before);
   }
   if (!loaded) return refuse(loaded.error().message);
   spdlog::info("resume: the scenes go on as they were {:.1f} s ago", std::chrono::duration<double>(age).count());
@@ -73,7 +59,7 @@ void Resumption::save(const settings::Config& config, Motion motion) const {
   if (file_.empty() || motion.animation.is_changing()) return;
   try {
     const std::vector<std::uint8_t> snapshot =
-        save_snapshot(motion, motion_made_of(config, config.sensors.size()), motion.hub.wind().time);
+        save_snapshot(motion, animation::motion_made_of(config, config.sensors.size()), motion.hub.wind().time);
     const std::string_view text(reinterpret_cast<const char*>(snapshot.data()), snapshot.size());
     if (const auto saved = platform::write_whole(file_, text, kOwner); !saved)
       spdlog::warn("resume: the motion is not saved: {}", saved.error().message);

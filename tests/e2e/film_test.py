@@ -53,6 +53,7 @@ def is_running(pid):
 class Film(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup would have films ignore it
         cls.kept = tempfile.TemporaryDirectory()
         folder = pathlib.Path(cls.kept.name)
         (folder / "wind.csv").write_text("time,speed\n" + "".join(f"2026-05-01T12:00:{i / 4:06.3f}Z,{3 + i % 5}\n" for i in range(240)))
@@ -147,6 +148,16 @@ class Film(unittest.TestCase):
         self.assertAlmostEqual(len(pictures) / PICTURE, 4.75 * FPS, delta=2)
         pictures, _ = self.make("--out", "-", "--duration", 0.5, "--fps", 240)
         self.assertEqual(len(pictures), 120 * PICTURE, "more of them than ticks")
+
+    def test_films_of_parts_join_by_the_states_that_they_keep(self):
+        states = self.folder / "states"
+        wind = self.folder / "wind.windlog"
+        (self.folder / "wind.csv").write_text("time,speed\n" + "".join(f"2026-05-01T12:{i // 60:02}:{i % 60:02}.0Z,{3 + i % 5}\n" for i in range(70)))
+        subprocess.run([PROGRAMS / "yuragi", "import", self.folder / "wind.csv", "-o", wind], check=True, capture_output=True)
+        part = lambda: self.make("--render", wind, "--from", 61, "--duration", 0.1, "--states", states, "--out", "-", drawn=True)[0]
+        first = part()
+        self.assertEqual(len(list(states.iterdir())), 1, "of the first minute")
+        self.assertEqual(part(), first)
 
     def test_an_mp4_appears_when_it_is_whole(self):
         film = self.folder / "take.mp4"

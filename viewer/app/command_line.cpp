@@ -71,6 +71,12 @@ void add_film_options(CLI::App& app, picture::ViewerOptions& options) {
       ->needs(render)
       ->type_name("T")
       ->group(film);
+  app.add_option("--states", options.states,
+                 "Let the scenes move from the recording's beginning on, so that films of its parts join; their state "
+                 "at each minute is kept in this folder")
+      ->needs(render)
+      ->type_name("FOLDER")
+      ->group(film);
   app.add_option("--duration", options.duration_s, "How long: 20 (seconds), 5min; default: to the recording's end")
       ->needs(render)
       ->type_name("TIME")

@@ -97,6 +97,7 @@ std::vector<std::string> replay_arguments(const picture::ViewerOptions& options)
   };
   add("--config", options.config);
   add("--start", options.from);
+  add("--states", options.states);
   if (options.duration_s) add("--duration", fmt::format("{}", *options.duration_s + kMoreReplay_s));
   if (options.is_as_recorded) arguments.emplace_back("--as-recorded");
   return arguments;

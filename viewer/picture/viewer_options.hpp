@@ -38,6 +38,7 @@ struct ViewerOptions {
   std::string render;  ///< a recording to film; empty: none
   bool is_as_recorded = false;
   std::string from;                  ///< as `yuragi replay --start`
+  std::string states;                ///< as `yuragi replay --states`
   std::optional<double> duration_s;  ///< of the film; unset: to the recording's end
   double fps = 30.0;                 ///< pictures a second
   std::string out;                   ///< make_film_output()

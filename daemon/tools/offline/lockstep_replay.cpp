@@ -2,14 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
 
 #include "daemon/animation/animation.hpp"
+#include "daemon/animation/motion_made_of.hpp"
 #include "daemon/sensing/held_clock.hpp"
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/sensor_jury.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
+#include "daemon/tools/offline/kept_states.hpp"
+#include "engine/base/snapshot.hpp"
+#include "engine/math/philox.hpp"
 #include "engine/pose/pose_hash.hpp"
 
 namespace yuragi::daemon::tools::offline {
@@ -33,10 +43,17 @@ class Ticks {
         use_(use) {}
 
   /// The time of the next tick on the clock of sensors and wind, from 0 on.
-  Nanoseconds clock() const { return from_seconds(static_cast<double>(led_ + result_.ticks) / rate_hz_); }
+  Nanoseconds clock() const { return from_seconds(static_cast<double>(count()) / rate_hz_); }
   /// The log time of the next tick, while is_leading_in() that of the first one.
   double now_s() const { return static_cast<double>(result_.ticks) / rate_hz_; }
   bool is_leading_in() const { return led_ < lead_ticks_; }
+  /// All ticks, led in or counted.
+  std::uint64_t count() const { return led_ + result_.ticks; }
+  /// The lead-in goes on until end_lead_in().
+  void lead_in_until_ended() { lead_ticks_ = std::numeric_limits<std::uint64_t>::max(); }
+  void end_lead_in() { lead_ticks_ = led_; }
+  /// Leaves out a tick of the lead-in, of which only the wind counts.
+  void pass_over() { ++led_; }
 
   void add(const wind::Reading& reading) {
     if (is_leading_in()) return;
@@ -109,14 +126,31 @@ class RecordedClock {
   Nanoseconds read_at_{0};
 };
 
+/// What the poses of a replay follow from, besides the version of the motion.
+std::uint64_t replay_made_of(const settings::Config& one_source, const std::filesystem::path& recording,
+                             const std::string& sensor, double lead_s) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(recording, error);
+  const auto written = std::filesystem::last_write_time(recording, error).time_since_epoch().count();
+  return math::stream_id(fmt::format("{} {} {} {} {} {}", animation::motion_made_of(one_source, 1), kMotionVersion,
+                                     size, written, lead_s, sensor));
+}
+
 }  // namespace
 
 Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
                                                    const std::filesystem::path& recording,
-                                                   const drivers::windlog::PlayerOptions& options, double duration_s,
-                                                   const std::function<void(double)>& progress, const UseTick& use) {
+                                                   drivers::windlog::PlayerOptions options, double duration_s,
+                                                   const std::function<void(double)>& progress, const UseTick& use,
+                                                   const std::filesystem::path& states_folder) {
   auto opened = drivers::windlog::Player::open(recording, options, Instant{});
   if (!opened) return opened.error();
+  const Nanoseconds begin = opened->position(MonoTime(from_seconds(options.lead_s))).log_time;
+  if (!states_folder.empty()) {
+    options.playback.start.clear();
+    opened = drivers::windlog::Player::open(recording, options, Instant{});
+    if (!opened) return opened.error();
+  }
   drivers::windlog::Player& player = *opened;
   const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
   animation::Animation animation(config, gusts);
@@ -131,7 +165,14 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   sensing::SensorJury jury({sensing::jury_rules_of(one_source.sensors[0])}, one_source.wind.stale_intervals,
                            one_source.wind.has_relative_gains);
 
+  std::optional<KeptStates> states;
+  if (!states_folder.empty()) {
+    states.emplace(states_folder, replay_made_of(one_source, recording, options.playback.sensor, options.lead_s),
+                   begin);
+  }
+
   Ticks ticks(animation, config.animation.rate_hz, options.lead_s, progress, use);
+  if (states) ticks.lead_in_until_ended();
   while (ticks.is_leading_in() || (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {
     // Readings that are due by this tick, at their own time.
     const Instant now{MonoTime(ticks.clock()), UtcTime(ticks.clock())};
@@ -146,7 +187,20 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
     wind::ground::DrivingWind wind{estimator.advance(now.mono), estimator.ground(), estimator.stroke()};
     shaping.shape(wind, true);
     const drivers::windlog::PlayerPosition at = player.position(now.mono);
+    if (states && ticks.is_leading_in() && now.mono >= MonoTime(from_seconds(options.lead_s)) && at.log_time >= begin) {
+      ticks.end_lead_in();
+    }
+    if (states && ticks.count() < states->first_ticks()) {
+      ticks.pass_over();
+      if (ticks.count() == states->first_ticks()) {
+        if (const auto loaded = states->load(animation, now.mono); !loaded) return loaded.error();
+      }
+      continue;
+    }
     ticks.step(wind, shaping.report().ceiling_gain, at.recorded + at.held_for, seconds(at.length - at.log_time));
+    if (states) {
+      if (const auto kept = states->keep(animation, ticks.count(), at.log_time, now.mono); !kept) return kept.error();
+    }
   }
   return ticks.result();
 }

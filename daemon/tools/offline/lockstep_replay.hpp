@@ -45,11 +45,17 @@ using UseTick = std::function<void(const ReplayTick& tick)>;
 /// after `duration_s` of log time, if above 0. Log time begins where the replay was to begin: in the seconds before, of
 /// `options.lead_s`, scenes live in the wind, and neither `use` nor the result sees them. Fails if the recording cannot
 /// be read.
+///
+/// With `states_folder` the poses are those of a replay from the recording's beginning, bit for bit, wherever this one
+/// begins: all before is led in. The scenes' states are kept in that folder (KeptStates), so that the scenes need not
+/// be stepped from the beginning again; the wind, which costs little, is. Not of a loop. Fails, too, if the folder
+/// cannot be written.
 Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
                                                    const std::filesystem::path& recording,
-                                                   const drivers::windlog::PlayerOptions& options, double duration_s,
+                                                   drivers::windlog::PlayerOptions options, double duration_s,
                                                    const std::function<void(double log_time_s)>& progress,
-                                                   const UseTick& use = {});
+                                                   const UseTick& use = {},
+                                                   const std::filesystem::path& states_folder = {});
 
 /// The same of an installation as it was recorded, with a lead-in of `lead_s`: through the daemon's own SensorHub
 /// (calibration, judging, vote, blend) and WindShaper (opening hours by the recorded clock). `result.readings` are

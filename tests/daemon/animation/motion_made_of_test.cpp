@@ -1,10 +1,10 @@
-#include "daemon/service/resumption.hpp"
-
 #include <string>
 
 #include <gtest/gtest.h>
 
-namespace yuragi::daemon::service {
+#include "daemon/animation/motion_made_of.hpp"
+
+namespace yuragi::daemon::animation {
 namespace {
 
 constexpr const char* kWall = R"(
@@ -26,7 +26,7 @@ std::uint64_t made_of(const std::string& more, std::string text = kWall, const s
   return motion_made_of(config, config.sensors.size());
 }
 
-TEST(ResumptionTest, TheMotionFollowsFromScenesWindAndTheNumberOfSensors) {
+TEST(MotionMadeOfTest, ItFollowsFromScenesWindAndTheNumberOfSensors) {
   const std::uint64_t wall = made_of("");
   EXPECT_NE(made_of("seed = 2\n"), wall);
   EXPECT_NE(made_of("[animation]\nrate = 50.0\n"), wall);
@@ -38,7 +38,7 @@ TEST(ResumptionTest, TheMotionFollowsFromScenesWindAndTheNumberOfSensors) {
   EXPECT_NE(made_of("", kWall, "port = 4800", "port = 4800\n[sensor.blend]\npriority = 2"), wall);
 }
 
-TEST(ResumptionTest, ItDoesNotFollowFromDoorsAndLookOrHowASensorIsConnectedAndCalibrated) {
+TEST(MotionMadeOfTest, ItDoesNotFollowFromDoorsAndLookOrHowASensorIsConnectedAndCalibrated) {
   const std::uint64_t wall = made_of("");
   EXPECT_EQ(made_of("[stream]\nlisten = \"0.0.0.0:7000\"\n"), wall);
   EXPECT_EQ(made_of("[http]\nlisten = \"127.0.0.1:8000\"\n"), wall);
@@ -49,10 +49,10 @@ TEST(ResumptionTest, ItDoesNotFollowFromDoorsAndLookOrHowASensorIsConnectedAndCa
   EXPECT_EQ(made_of("", kWall, "port = 4800", "port = 4800\n[sensor.calibration]\ngain = 1.1"), wall);
 }
 
-TEST(ResumptionTest, WithoutTheLastSensorsItIsAsBeforeTheyWereAdded) {
+TEST(MotionMadeOfTest, WithoutTheLastSensorsItIsAsBeforeTheyWereAdded) {
   const std::string mast = "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n";
   EXPECT_EQ(motion_made_of(settings::parse_config(kWall + mast, "wall.toml"), 1), made_of(""));
 }
 
 }  // namespace
-}  // namespace yuragi::daemon::service
+}  // namespace yuragi::daemon::animation

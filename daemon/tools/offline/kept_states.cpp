@@ -1,0 +1,99 @@
+#include "daemon/tools/offline/kept_states.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "engine/base/snapshot.hpp"
+#include "engine/platform/whole_file.hpp"
+
+namespace yuragi::daemon::tools::offline {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSuffix = ".state";
+constexpr std::size_t kMaxState_bytes = 1UL << 30;
+
+/// What the name of a file says: the ticks before the state, and the log time of the last of them.
+struct Place {
+  std::uint64_t ticks = 0;
+  Nanoseconds log_time{0};
+};
+
+std::string prefix_of(std::uint64_t made_of) {
+  return fmt::format("{:016x}-", made_of);
+}
+
+std::string name_of(std::uint64_t made_of, const Place& place) {
+  return fmt::format("{}{}-{}{}", prefix_of(made_of), place.ticks, place.log_time.count(), kSuffix);
+}
+
+std::optional<Place> place_in(std::string_view name, std::uint64_t made_of) {
+  const std::string prefix = prefix_of(made_of);
+  if (!name.starts_with(prefix) || !name.ends_with(kSuffix)) return std::nullopt;
+  std::uint64_t ticks = 0;
+  std::int64_t log_time_ns = 0;
+  const char* const end = name.data() + name.size();
+  const auto ticks_end = std::from_chars(name.data() + prefix.size(), end, ticks).ptr;
+  if (ticks_end == end || *ticks_end != '-') return std::nullopt;
+  std::from_chars(ticks_end + 1, end, log_time_ns);
+  const Place place{ticks, Nanoseconds(log_time_ns)};
+  return ticks > 0 && name == name_of(made_of, place) ? std::optional(place) : std::nullopt;
+}
+
+std::span<const std::uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+KeptStates::KeptStates(fs::path folder, std::uint64_t made_of, Nanoseconds begin)
+    : folder_(std::move(folder)), made_of_(made_of) {
+  std::vector<Place> places;
+  std::error_code error;
+  for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+    const auto place = place_in(at->path().filename().string(), made_of);
+    if (place && place->log_time < begin) places.push_back(*place);
+  }
+  std::ranges::sort(places, std::ranges::greater(), &Place::ticks);
+  for (const Place& place : places) {
+    const auto text = platform::read_whole(folder_ / name_of(made_of, place), kMaxState_bytes);
+    if (!text || !opened_snapshot(bytes_of(*text), made_of)) continue;
+    first_ticks_ = place.ticks;
+    first_.assign(bytes_of(*text).begin(), bytes_of(*text).end());
+    next_ = place.log_time - place.log_time % kEvery + kEvery;
+    return;
+  }
+}
+
+Result<void, Failure> KeptStates::load(animation::Animation& animation, MonoTime now) {
+  const std::vector<std::uint8_t> first = std::exchange(first_, {});
+  if (const auto loaded = load_snapshot(animation, made_of_, first, now); !loaded) {
+    return Failure{fmt::format("{}: the state after {} ticks {}: empty the folder", folder_.string(), first_ticks_,
+                               loaded.error().message),
+                   FailureKind::kBadData};
+  }
+  return {};
+}
+
+Result<void, Failure> KeptStates::keep(animation::Animation& animation, std::uint64_t ticks, Nanoseconds log_time,
+                                       MonoTime now) {
+  if (log_time < next_) return {};
+  next_ = log_time - log_time % kEvery + kEvery;
+  const fs::path file = folder_ / name_of(made_of_, {ticks, log_time});
+  std::error_code error;
+  if (fs::exists(file, error)) return {};
+  fs::create_directories(folder_, error);  // what is wrong, the writing says
+  const std::vector<std::uint8_t> state = save_snapshot(animation, made_of_, now);
+  return platform::write_whole(file, {reinterpret_cast<const char*>(state.data()), state.size()});
+}
+
+}  // namespace yuragi::daemon::tools::offline
