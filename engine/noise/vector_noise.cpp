@@ -76,30 +76,31 @@ std::vector<VectorNoiseMaker::Mode> VectorNoiseMaker::modes_of(fft::RealFft& fft
 }
 
 VectorTile2 VectorNoiseMaker::tile_of(fft::RealFft& fft, const std::vector<Mode>& modes) {
-  const auto samples_of = [&](std::complex<double> Mode::*component) {
+  const auto transform = [&](std::complex<double> Mode::*component) {
     std::ranges::fill(fft.spectrum(), std::complex<double>());
     for (const Mode& mode : modes) fft.spectrum()[mode.index] = mode.*component;
     fft.inverse();
-    return std::vector<double>(fft.samples().begin(), fft.samples().end());
   };
-  std::vector<double> x = samples_of(&Mode::x);
-  std::vector<double> z = samples_of(&Mode::z);
+  transform(&Mode::x);
+  x_.assign(fft.samples().begin(), fft.samples().end());
+  transform(&Mode::z);
+  const std::span<const double> z = fft.samples();
   double xx = 0.0;
   double zz = 0.0;
   double xz = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += x[i] * x[i];
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    xx += x_[i] * x_[i];
     zz += z[i] * z[i];
-    xz += x[i] * z[i];
+    xz += x_[i] * z[i];
   }
-  const auto count = static_cast<double>(x.size());
+  const auto count = static_cast<double>(z.size());
   const Whitening whitening(xx / count, zz / count, xz / count);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double own = x[i];
-    x[i] = whitening.x * own + whitening.across * z[i];
-    z[i] = whitening.across * own + whitening.z * z[i];
+  VectorTile2 tile{.x = {fft.size(), std::vector<float>(z.size())}, .z = {fft.size(), std::vector<float>(z.size())}};
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    tile.x.values[i] = on_grid(whitening.x * x_[i] + whitening.across * z[i], {});
+    tile.z.values[i] = on_grid(whitening.across * x_[i] + whitening.z * z[i], {});
   }
-  return {.x = {fft.size(), values_on_grid(x, {})}, .z = {fft.size(), values_on_grid(z, {})}};
+  return tile;
 }
 
 }  // namespace yuragi::noise

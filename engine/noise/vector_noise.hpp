@@ -50,9 +50,10 @@ class VectorNoiseMaker {
     std::complex<double> x, z;
   };
   std::vector<Mode> modes_of(fft::RealFft& fft, const Spec& spec) const;
-  static VectorTile2 tile_of(fft::RealFft& fft, const std::vector<Mode>& modes);
+  VectorTile2 tile_of(fft::RealFft& fft, const std::vector<Mode>& modes);
 
   std::map<std::size_t, fft::RealFft> transforms_;  ///< by their size
+  std::vector<double> x_;                           ///< samples of the first component
 };
 
 }  // namespace yuragi::noise
