@@ -55,11 +55,13 @@ export async function begin({ chromiumPath, programs, tools }) {
       running.delete(child);
     },
 
-    /** A page, and all that it writes on its console or asks of others. Without motion, which the processor would draw. */
-    async open(url, options = {}) {
+    /** A page, and all that it writes on its console or asks of others. Without motion, which the processor would draw.
+        `script`: what the page runs before its own scripts. */
+    async open(url, { script, ...options } = {}) {
       const context = await browser.newContext({ viewport: { width: 320, height: 180 }, reducedMotion: "reduce", ...options });
       const page = await context.newPage();
       page.setDefaultTimeout(HANG_MS);
+      if (script) await page.addInitScript({ content: script });
       page.complaints = [];
       page.on("console", (message) => {
         if (!TOO_BUSY.test(message.text())) page.complaints.push(message.text());

@@ -33,22 +33,25 @@ scene = "meadow"
 name = "pond"
 scene = "lawn"
 `;
+const PAUSE_MS = 50; // between two looks
 let world;
 
 const start = (...args) => world.start(...args);
 const kill = (child) => world.kill(child);
-const open = (url, options = {}) => world.open(url, { viewport: { width: 1920, height: 1080 }, ...options });
+/** What a large screen shows, where it is looked at; elsewhere a small one, which software draws in less time. */
+const WIDE = { width: 1920, height: 1080 };
+const open = (url, options = {}) => world.open(url, { viewport: { width: 800, height: 600 }, ...options });
 const configured = (name, text) => world.file(name, text + SCENES);
 const startDaemon = (file) => start("yuragi", ["run", "--config", file, "--listen", "127.0.0.1:0"], /answering at/);
 const startSensor = () => start("yuragi-sim", ["nmea", "--tcp", `127.0.0.1:${sensorPort}`, "--rate", "5"], /listening|127\.0\.0\.1/);
 
 const sentence = (page) => page.textContent("#sentence");
 const waitForSentence = (page, pattern) =>
-  page.waitForFunction((source) => new RegExp(source).test(document.getElementById("sentence").textContent), pattern.source);
+  page.waitForFunction((source) => new RegExp(source).test(document.getElementById("sentence").textContent), pattern.source, { polling: PAUSE_MS });
 const assertAccessible = async (page, what) => assert.deepEqual(await world.accessibilityFaults(page), [], what);
 /** Waits until the daemon is so. */
 async function waitFor(holds) {
-  for (const hangs = Date.now() + HANG_MS; !(await holds()); ) assert.ok(Date.now() < hangs, String(holds));
+  for (const hangs = Date.now() + HANG_MS; !(await holds()); await new Promise((resolve) => setTimeout(resolve, PAUSE_MS))) assert.ok(Date.now() < hangs, String(holds));
 }
 const screenshot = (page, name) => page.screenshot({ path: path.join(screenshots, name + ".png"), fullPage: true });
 
@@ -90,7 +93,7 @@ test("it needs nothing but the daemon, and says nothing on the console", { timeo
 });
 
 test("recorded wind: what to do where nothing is recorded; a day and a year of what is", { timeout: 2 * HANG_MS }, async () => {
-  const page = await open(url);
+  const page = await open(url, { viewport: WIDE });
   await page.waitForSelector("#history .empty:text('[recording] file')");
   assert.deepEqual(page.complaints, []);
   const row = (values) => Array.from({ length: 481 }, (_, step) => (step > 100 && step < 160 ? null : values(step)));
@@ -347,7 +350,7 @@ test("the keyboard moves a slider of the look, and undo gives its value before b
 });
 
 test("a select, a field and a switch set values; those of others appear; one that is refused goes back with its reason", { timeout: 2 * HANG_MS }, async () => {
-  const page = await open(url);
+  const page = await open(url, { viewport: WIDE });
   await openLook(page);
   const answered = async (act) => (await Promise.all([isSent(page), act()]))[0].status();
   const palette = page.getByLabel("palette");
@@ -380,7 +383,7 @@ test("a select, a field and a switch set values; those of others appear; one tha
 });
 
 test("a wind by hand is in the sentence with its time until it is stopped, and so is a blackout", { timeout: 2 * HANG_MS }, async () => {
-  const page = await open(url);
+  const page = await open(url, { viewport: WIDE });
   await waitForSentence(page, LIVE);
   const speed = page.getByRole("slider", { name: "Wind speed" });
   await speed.focus();
@@ -476,7 +479,7 @@ test("motion is left out for whoever wants none", { timeout: 2 * HANG_MS }, asyn
 });
 
 test("the sentence follows a sensor that is killed, and one that is back", { timeout: 2 * HANG_MS }, async () => {
-  const page = await open(url);
+  const page = await open(url, { viewport: WIDE });
   await waitForSentence(page, LIVE);
   await kill(sensor);
   await waitForSentence(page, /because roof is disconnected$/);
@@ -561,7 +564,7 @@ test("by WebSocket: each message is shown, and silence is no connection", { time
 });
 
 /** A daemon with a token, asked as from another machine: the page, and the code of now. */
-async function openFromElsewhere(port, settings) {
+async function openFromElsewhere(port, settings, options = {}) {
   const file = configured(`paired-${port}.toml`, `
 [http]
 listen = "127.0.0.1:${port}"
@@ -574,7 +577,7 @@ driver = "synthetic"
   const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
   token("--new");
   await startDaemon(file);
-  const page = await open(`http://127.0.0.1:${port}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  const page = await open(`http://127.0.0.1:${port}/`, { ...options, extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
   return { page, token, code: () => JSON.parse(token("--json")).pairing_code };
 }
 
@@ -588,7 +591,7 @@ token_file = "${path.join(world.folder, "token-setup")}"
   token("--new");
   await startDaemon(file);
   const station = await start("yuragi-sim", ["nmea", "--tcp", "127.0.0.1:0", "--rate", "5"], /127\.0\.0\.1:(\d+)/);
-  const page = await open(`http://127.0.0.1:${setupPort}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  const page = await open(`http://127.0.0.1:${setupPort}/`, { viewport: WIDE, extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
   await waitForSentence(page, /^Synthetic wind, not measured: synthetic/);
   await page.getByRole("button", { name: "Add a sensor" }).click();
   await page.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
@@ -684,7 +687,7 @@ port = ${station.answer[1]}
 });
 
 test("a value of the look and of a scene is kept, undone, and goes back to the configuration", { timeout: 4 * HANG_MS }, async () => {
-  const { page, code } = await openFromElsewhere(keepPort, "");
+  const { page, code } = await openFromElsewhere(keepPort, "", { viewport: WIDE });
   const button = (name) => page.locator("#look").getByRole("button", { name, exact: true });
   const waitForHaze = (text) => page.waitForSelector(`.parameter:has(label:text-is("haze")) output:text-is("${text}")`);
   const x = page.locator("#look .group:nth-child(2)").getByLabel("x (m)", { exact: true });
@@ -726,7 +729,7 @@ test("a value of the look and of a scene is kept, undone, and goes back to the c
 });
 
 test("another machine reads, and pairs before it changes something; hostile names stay text", { timeout: 2 * HANG_MS }, async () => {
-  const { page, token, code } = await openFromElsewhere(pairingPort, "");
+  const { page, token, code } = await openFromElsewhere(pairingPort, "", { viewport: WIDE });
   await waitForSentence(page, /^Synthetic wind, not measured: <img/);
   assert.ok((await sentence(page)).includes(HOSTILE));
   assert.equal(await page.textContent("#sensors h3"), HOSTILE);
@@ -817,7 +820,7 @@ driver = "synthetic"
 `);
   const daemon = await start("yuragi", ["run", "--config", file, "--listen", "127.0.0.1:0"], /answering at (http:\/\/\S+)/);
   const base = daemon.answer[1];
-  const page = await open(base + "/");
+  const page = await open(base + "/", { viewport: WIDE });
   const messages = [];
   // The daemon's own page, which is left here, may still get its state.
   page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
@@ -826,7 +829,7 @@ driver = "synthetic"
   }));
   await page.goto(base + "/site/");
   await page.waitForFunction(() => wind && wind.speed > 0 && frameCount > 10);
-  while (messages.length < 120) await page.waitForFunction(() => true); // a turn of the browser
+  while (messages.length < 120) await page.waitForTimeout(PAUSE_MS);
   assert.ok(messages.every(({ t }, i) => i === 0 || t > messages[i - 1].t));
   assert.deepEqual(page.complaints, []);
   await screenshot(page, "site");
