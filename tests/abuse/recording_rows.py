@@ -139,7 +139,7 @@ def record_through(bench, fault, mend, state, file, config="", before=(), enviro
     mend()
     mended_s = time.monotonic()
     good = witness.wait_for(lambda sensors: sensors["recorder"]["state"] == RECORDER_WRITING
-                            and sensors["recorder"]["written"] >= len(sender.sent_s) - 60 and sensors["recorder"]["waiting"] < 30)
+                            and sensors["recorder"]["written"] >= sensors["sensors"][0]["readings"] - 60 and sensors["recorder"]["waiting"] < 30)
     if bench.expect(good, "it did not recover"):
         bench.figure(f"{waiting} readings waited; all well again after {time.monotonic() - mended_s:.1f} s, "
                      f"{good['recorder']['lost']} lost")
