@@ -55,23 +55,29 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 
 }  // namespace
 
-KeptStates::KeptStates(fs::path folder, std::uint64_t made_of, Nanoseconds begin)
-    : folder_(std::move(folder)), made_of_(made_of) {
-  std::vector<Place> places;
+Result<KeptStates, Failure> KeptStates::open(const fs::path& folder, std::uint64_t made_of, Nanoseconds begin) {
   std::error_code error;
-  for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
+  fs::create_directories(folder, error);
+  if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
+  if (error)
+    return Failure{fmt::format("{}: cannot be a folder for states: {}", folder.string(), error.message()),
+                   FailureKind::kCannotCreate};
+  KeptStates states(folder, made_of);
+  std::vector<Place> places;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     const auto place = place_in(at->path().filename().string(), made_of);
     if (place && place->log_time < begin) places.push_back(*place);
   }
   std::ranges::sort(places, std::ranges::greater(), &Place::ticks);
   for (const Place& place : places) {
-    const auto text = platform::read_whole(folder_ / name_of(made_of, place), kMaxState_bytes);
+    const auto text = platform::read_whole(folder / name_of(made_of, place), kMaxState_bytes);
     if (!text || !opened_snapshot(bytes_of(*text), made_of)) continue;
-    first_ticks_ = place.ticks;
-    first_.assign(bytes_of(*text).begin(), bytes_of(*text).end());
-    next_ = place.log_time - place.log_time % kEvery + kEvery;
-    return;
+    states.first_ticks_ = place.ticks;
+    states.first_.assign(bytes_of(*text).begin(), bytes_of(*text).end());
+    states.next_ = place.log_time - place.log_time % kEvery + kEvery;
+    break;
   }
+  return states;
 }
 
 Result<void, Failure> KeptStates::load(animation::Animation& animation, MonoTime now) {
@@ -91,9 +97,12 @@ Result<void, Failure> KeptStates::keep(animation::Animation& animation, std::uin
   const fs::path file = folder_ / name_of(made_of_, {ticks, log_time});
   std::error_code error;
   if (fs::exists(file, error)) return {};
-  fs::create_directories(folder_, error);  // what is wrong, the writing says
   const std::vector<std::uint8_t> state = save_snapshot(animation, made_of_, now);
-  return platform::write_whole(file, {reinterpret_cast<const char*>(state.data()), state.size()});
+  try {
+    return platform::write_whole(file, {reinterpret_cast<const char*>(state.data()), state.size()});
+  } catch (const FailureError& failure) {  // the folder has vanished
+    return Failure{failure.what(), failure.kind()};
+  }
 }
 
 }  // namespace yuragi::daemon::tools::offline

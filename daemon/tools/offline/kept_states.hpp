@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "daemon/animation/animation.hpp"
@@ -18,8 +19,10 @@ class KeptStates {
  public:
   static constexpr Nanoseconds kEvery = std::chrono::minutes(1);
 
-  /// Looks for the last state before `begin`, a log time. `made_of`: the hash of all that the poses follow from.
-  KeptStates(std::filesystem::path folder, std::uint64_t made_of, Nanoseconds begin);
+  /// Looks for the last state before `begin`, a log time. `made_of`: the hash of all that the poses follow from. Makes
+  /// the folder, and fails (kCannotCreate) if it cannot be one.
+  static Result<KeptStates, Failure> open(const std::filesystem::path& folder, std::uint64_t made_of,
+                                          Nanoseconds begin);
 
   /// The number of ticks that need not be stepped; 0: there is no state.
   std::uint64_t first_ticks() const noexcept { return first_ticks_; }
@@ -27,10 +30,12 @@ class KeptStates {
   Result<void, Failure> load(animation::Animation& animation, MonoTime now);
 
   /// Keeps the state after so many ticks of a replay, if a minute begins there and it is not kept yet. `log_time`: of
-  /// the last of them, which was at `now`.
+  /// the last of them, which was at `now`. The failure names the file.
   Result<void, Failure> keep(animation::Animation& animation, std::uint64_t ticks, Nanoseconds log_time, MonoTime now);
 
  private:
+  KeptStates(std::filesystem::path folder, std::uint64_t made_of) : folder_(std::move(folder)), made_of_(made_of) {}
+
   std::filesystem::path folder_;
   std::uint64_t made_of_;
   std::uint64_t first_ticks_ = 0;

@@ -167,8 +167,10 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
 
   std::optional<KeptStates> states;
   if (!states_folder.empty()) {
-    states.emplace(states_folder, replay_made_of(one_source, recording, options.playback.sensor, options.lead_s),
-                   begin);
+    auto kept = KeptStates::open(states_folder,
+                                 replay_made_of(one_source, recording, options.playback.sensor, options.lead_s), begin);
+    if (!kept) return kept.error();
+    states = std::move(*kept);
   }
 
   Ticks ticks(animation, config.animation.rate_hz, options.lead_s, progress, use);
