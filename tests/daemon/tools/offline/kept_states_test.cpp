@@ -26,7 +26,7 @@ using ::testing::Not;
 
 constexpr const char* kScenes = R"(
 [animation]
-rate = 30.0
+rate = 10.0
 [[scene]]
 kind = "grass"
 blades_across = 8
@@ -36,7 +36,7 @@ kind = "flag"
 columns = 8
 rows = 8
 )";
-constexpr double kRate_hz = 30.0;
+constexpr double kRate_hz = 10.0;
 
 class KeptStatesTest : public ::testing::Test {
  protected:
