@@ -20,6 +20,7 @@ constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(
 int shadow_texels(look::Quality quality) {
   switch (quality) {
     case look::Quality::kLow:
+      return 512;
     case look::Quality::kMedium:
       return 1024;
     case look::Quality::kHigh:
@@ -33,8 +34,8 @@ constexpr int kMirror = 2;        // a mirror's pixel is as large as this many o
 constexpr int kLowMirror = 3;     // with quality low
 constexpr float kMinSun = 0.02F;  // sine of its height: below it shadows are endless
 
-constexpr float kShadowPixels = 2.5F;  // with quality low a shadow is drawn as if its texels had this size
-constexpr float kSmallest_px = 2.0F;   // an object with half of this width is not drawn
+constexpr float kShadowPixels = 1.25F;  // with quality low a shadow is drawn as if its texels had this size
+constexpr float kSmallest_px = 2.0F;    // an object with half of this width is not drawn
 
 /// Half the width of water in the picture at which it begins to mirror more than the sky, and at which it mirrors
 /// everything.
