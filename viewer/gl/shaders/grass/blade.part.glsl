@@ -13,7 +13,7 @@ bool is_seed(float chance) { return chance > 0.93; }
 bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * grass_fresh.w * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
 
 // A point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` and turns by `turned` up to its tip
-// (meshes/strand_tiles.hpp: arc_point()).
+// (tests/viewer/meshes/sward_test.cpp has the same).
 vec3 arc_point(vec2 foot, vec2 turned, float t) {
   float half_2 = 0.25 * t * t * dot(turned, turned);
   return t * (1.0 - half_2 * (1.0 / 6.0 - half_2 / 120.0)) * leaning(foot + turned * (0.5 * t));
