@@ -20,8 +20,6 @@
 namespace yuragi::drivers::decode {
 namespace {
 
-using test::hex_bytes;
-using test::is_refused_as;
 using StationBytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view kStationVectors = "hid_vectors.json";
