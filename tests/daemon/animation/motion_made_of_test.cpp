@@ -1,8 +1,8 @@
+#include "daemon/animation/motion_made_of.hpp"
+
 #include <string>
 
 #include <gtest/gtest.h>
-
-#include "daemon/animation/motion_made_of.hpp"
 
 namespace yuragi::daemon::animation {
 namespace {
