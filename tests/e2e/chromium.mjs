@@ -74,7 +74,7 @@ export async function begin({ chromiumPath, programs, tools }) {
       return page;
     },
 
-    /** What keeps people from using this page, as axe-core finds it. */
+    /** The faults of this page that axe-core finds: they keep some people from using it. */
     async accessibilityFaults(page) {
       return page.evaluate(async (source) => {
         if (!window.axe) Object.assign(window, { axe: new Function(source + "; return axe;")() });

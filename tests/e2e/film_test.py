@@ -50,17 +50,24 @@ def is_running(pid):
         return False
 
 
+def record(folder, moments):
+    """A recording with a reading at each of these seconds."""
+    (folder / "wind.csv").write_text("time,speed\n" + "".join(
+        f"2026-05-01T12:{second // 60:02.0f}:{second % 60:06.3f}Z,{3 + i % 5}\n" for i, second in enumerate(moments)))
+    recording = folder / "wind.windlog"
+    subprocess.run([PROGRAMS / "yuragi", "import", folder / "wind.csv", "-o", recording], check=True, capture_output=True)
+    return recording
+
+
 class Film(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup would have films ignore it
         cls.kept = tempfile.TemporaryDirectory()
         folder = pathlib.Path(cls.kept.name)
-        (folder / "wind.csv").write_text("time,speed\n" + "".join(f"2026-05-01T12:00:{i / 4:06.3f}Z,{3 + i % 5}\n" for i in range(240)))
         (folder / "scenes.toml").write_text(SCENES)
-        cls.recording = folder / "wind.windlog"
+        cls.recording = record(folder, [i / 4 for i in range(240)])
         cls.config = folder / "scenes.toml"
-        subprocess.run([PROGRAMS / "yuragi", "import", folder / "wind.csv", "-o", cls.recording], check=True, capture_output=True)
 
     @classmethod
     def tearDownClass(cls):
@@ -151,9 +158,7 @@ class Film(unittest.TestCase):
 
     def test_films_of_parts_join_by_the_states_that_they_keep(self):
         states = self.folder / "states"
-        wind = self.folder / "wind.windlog"
-        (self.folder / "wind.csv").write_text("time,speed\n" + "".join(f"2026-05-01T12:{i // 60:02}:{i % 60:02}.0Z,{3 + i % 5}\n" for i in range(70)))
-        subprocess.run([PROGRAMS / "yuragi", "import", self.folder / "wind.csv", "-o", wind], check=True, capture_output=True)
+        wind = record(self.folder, range(70))
         part = lambda: self.make("--render", wind, "--from", 61, "--duration", 0.1, "--states", states, "--out", "-", drawn=True)[0]
         first = part()
         self.assertEqual(len(list(states.iterdir())), 1, "of the first minute")

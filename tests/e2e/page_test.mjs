@@ -38,7 +38,7 @@ let world;
 
 const start = (...args) => world.start(...args);
 const kill = (child) => world.kill(child);
-/** What a large screen shows, where it is looked at; elsewhere a small one, which software draws in less time. */
+/** For tests of what a large screen shows. The others have a small one, which software draws in less time. */
 const WIDE = { width: 1920, height: 1080 };
 const open = (url, options = {}) => world.open(url, { viewport: { width: 800, height: 600 }, ...options });
 const configured = (name, text) => world.file(name, text + SCENES);

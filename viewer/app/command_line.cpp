@@ -86,6 +86,7 @@ void add_film_options(CLI::App& app, picture::ViewerOptions& options) {
   app.add_flag("--as-recorded", options.is_as_recorded, "Use the configuration and all sensors of the recording")
       ->needs(render)
       ->excludes("--config")
+      ->excludes("--states")
       ->group(film);
   app.add_flag("--draw-nothing", options.draws_nothing,
                "Write black pictures, on a machine without OpenGL or for tests")

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSuffix = ".state";
 constexpr std::size_t kMaxState_bytes = 1UL << 30;
 
-/// What the name of a file says: the ticks before the state, and the log time of the last of them.
+/// What is in the name of a file: the ticks before the state, and the log time of the last of them.
 struct Place {
   std::uint64_t ticks = 0;
   Nanoseconds log_time{0};
@@ -70,10 +71,10 @@ Result<KeptStates, Failure> KeptStates::open(const fs::path& folder, std::uint64
   }
   std::ranges::sort(places, std::ranges::greater(), &Place::ticks);
   for (const Place& place : places) {
-    const auto text = platform::read_whole(folder / name_of(made_of, place), kMaxState_bytes);
+    auto text = platform::read_whole(folder / name_of(made_of, place), kMaxState_bytes);
     if (!text || !opened_snapshot(bytes_of(*text), made_of)) continue;
     states.first_ticks_ = place.ticks;
-    states.first_.assign(bytes_of(*text).begin(), bytes_of(*text).end());
+    states.first_ = std::move(*text);
     states.next_ = place.log_time - place.log_time % kEvery + kEvery;
     break;
   }
@@ -81,8 +82,8 @@ Result<KeptStates, Failure> KeptStates::open(const fs::path& folder, std::uint64
 }
 
 Result<void, Failure> KeptStates::load(animation::Animation& animation, MonoTime now) {
-  const std::vector<std::uint8_t> first = std::exchange(first_, {});
-  if (const auto loaded = load_snapshot(animation, made_of_, first, now); !loaded) {
+  const std::string first = std::exchange(first_, {});
+  if (const auto loaded = load_snapshot(animation, made_of_, bytes_of(first), now); !loaded) {
     return Failure{fmt::format("{}: the state after {} ticks {}: empty the folder", folder_.string(), first_ticks_,
                                loaded.error().message),
                    FailureKind::kBadData};
@@ -94,12 +95,10 @@ Result<void, Failure> KeptStates::keep(animation::Animation& animation, std::uin
                                        MonoTime now) {
   if (log_time < next_) return {};
   next_ = log_time - log_time % kEvery + kEvery;
-  const fs::path file = folder_ / name_of(made_of_, {ticks, log_time});
-  std::error_code error;
-  if (fs::exists(file, error)) return {};
   const std::vector<std::uint8_t> state = save_snapshot(animation, made_of_, now);
   try {
-    return platform::write_whole(file, {reinterpret_cast<const char*>(state.data()), state.size()});
+    return platform::write_whole(folder_ / name_of(made_of_, {ticks, log_time}),
+                                 {reinterpret_cast<const char*>(state.data()), state.size()});
   } catch (const FailureError& failure) {  // the folder has vanished
     return Failure{failure.what(), failure.kind()};
   }

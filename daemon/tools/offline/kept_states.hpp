@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <utility>
-#include <vector>
 
 #include "daemon/animation/animation.hpp"
 #include "engine/base/result.hpp"
@@ -14,7 +14,7 @@ namespace yuragi::daemon::tools::offline {
 
 /// The scenes' states in a folder, one for each minute of a replay's log time, so that a replay that begins further on
 /// need not step the scenes from the beginning: from a state they go on with the same bits. A file that is damaged, of
-/// another version of the motion, or of anything else counts as none. Nothing is deleted. Thread-safe: no.
+/// another version of the motion, or of anything else counts as none. None is deleted. Thread-safe: no.
 class KeptStates {
  public:
   static constexpr Nanoseconds kEvery = std::chrono::minutes(1);
@@ -29,8 +29,8 @@ class KeptStates {
   /// Loads the state after these ticks. `now`: the moment of the last of them.
   Result<void, Failure> load(animation::Animation& animation, MonoTime now);
 
-  /// Keeps the state after so many ticks of a replay, if a minute begins there and it is not kept yet. `log_time`: of
-  /// the last of them, which was at `now`. The failure names the file.
+  /// Keeps the state after so many ticks of a replay, if a minute begins there. `log_time`: of the last of them, which
+  /// was at `now`. Replaces the file of that minute, which may be damaged. The failure names the file.
   Result<void, Failure> keep(animation::Animation& animation, std::uint64_t ticks, Nanoseconds log_time, MonoTime now);
 
  private:
@@ -39,8 +39,8 @@ class KeptStates {
   std::filesystem::path folder_;
   std::uint64_t made_of_;
   std::uint64_t first_ticks_ = 0;
-  std::vector<std::uint8_t> first_;  ///< the state, until it is loaded
-  Nanoseconds next_ = kEvery;        ///< the log time of the next one to keep
+  std::string first_;          ///< the state, until it is loaded
+  Nanoseconds next_ = kEvery;  ///< the log time of the next one to keep
 };
 
 }  // namespace yuragi::daemon::tools::offline

@@ -6,7 +6,7 @@
 
 namespace yuragi::wind::turbulence {
 
-// The change of the mean wind and its turbulence with height and from place to place. All functions here are pure.
+// The change of the mean wind and its turbulence with height. All functions here are pure.
 // Thread-safe and realtime-safe: yes.
 
 /// The friction velocity u* of the logarithmic profile (u* / 0.41) ln(z / z0) that has this speed at this height, which

@@ -42,12 +42,13 @@ class KeptStatesTest : public ::testing::Test {
  protected:
   KeptStatesTest() { record_session(recording_, kFridayNoon, 130.0, "", {{.sensor = "mast", .speed_m_s = gusty_m_s}}); }
 
-  /// A hash of the poses of each tick of 2 s, from `start` on.
+  /// A hash of the poses of each tick, from `start` on.
   Result<std::vector<std::uint64_t>, Failure> poses(const std::string& start, const fs::path& states,
-                                                    const std::string& text = kScenes) const {
+                                                    const std::string& text = kScenes, double duration_s = 2.0) const {
     std::vector<std::uint64_t> hashes;
     const auto replayed = replay_in_lockstep(
-        settings::parse_config(text, "wall.toml"), recording_, {.playback = {.start = start}, .lead_s = 1.0}, 2.0, {},
+        settings::parse_config(text, "wall.toml"), recording_, {.playback = {.start = start}, .lead_s = 1.0},
+        duration_s, {},
         [&hashes](const ReplayTick& tick) {
           std::uint64_t hash = 0;
           for (const pose::Pose* pose : tick.animation.poses()) hash = pose::pose_hash(hash, *pose);
@@ -58,18 +59,10 @@ class KeptStatesTest : public ::testing::Test {
     return hashes;
   }
 
-  /// The same of a replay from the beginning.
+  /// The same from a replay of the whole.
   std::vector<std::uint64_t> poses_of_the_whole(double start_s) const {
-    std::vector<std::uint64_t> hashes;
-    const double end_s = start_s + 2.0;
-    replay_in_lockstep(settings::parse_config(kScenes, "wall.toml"), recording_, {.lead_s = 1.0}, end_s, {},
-                       [&hashes](const ReplayTick& tick) {
-                         std::uint64_t hash = 0;
-                         for (const pose::Pose* pose : tick.animation.poses()) hash = pose::pose_hash(hash, *pose);
-                         hashes.push_back(hash);
-                       })
-        .value();
-    return {hashes.begin() + std::lround(start_s * kRate_hz), hashes.end()};
+    const std::vector<std::uint64_t> all = poses("", "", kScenes, start_s + 2.0).value();
+    return {all.begin() + std::lround(start_s * kRate_hz), all.end()};
   }
 
   std::vector<fs::path> kept() const {
@@ -101,10 +94,12 @@ TEST_F(KeptStatesTest, TheScenesGoOnFromTheLastState) {
   EXPECT_THAT(poses("121.5", states_).value(), Not(ElementsAreArray(whole))) << "it was another minute's";
 }
 
-TEST_F(KeptStatesTest, ADamagedFileCountsAsNone) {
+TEST_F(KeptStatesTest, ADamagedFileCountsAsNoneAndIsReplaced) {
   const std::vector<std::uint64_t> whole = poses("121.5", states_).value();
-  for (const fs::path& file : kept()) fs::resize_file(file, fs::file_size(file) - 1);
+  const auto size = fs::file_size(kept().at(0));
+  for (const fs::path& file : kept()) fs::resize_file(file, size - 1);
   EXPECT_THAT(poses("121.5", states_).value(), ElementsAreArray(whole));
+  for (const fs::path& file : kept()) EXPECT_EQ(fs::file_size(file), size) << "it is replaced";
 }
 
 TEST_F(KeptStatesTest, AnotherConfigurationOrRecordingHasItsOwn) {
