@@ -24,6 +24,7 @@ constexpr double kMinMeasuredPart = 0.5;
 struct MicrophoneOptions {
   tools::calibration::Request request;
   std::vector<double> speeds_m_s;
+  std::string points;
 };
 
 /// How readings were computed from levels: needed to compute the levels from readings.
@@ -139,13 +140,32 @@ drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::
   const double level_db = sum_db / static_cast<double>(levels_db.size());
   session.dialog().print(fmt::format("At {:g} m/s the level is {:.1f} dB, over {}.", speed_m_s, level_db,
                                      count_text(levels_db.size(), "reading")));
+  session.report_point({drivers::decode::microphone::mic_speed_m_s(
+                            conversion.calibration, std::pow(10.0, 0.1 * level_db), conversion.noise_power),
+                        speed_m_s});
   return {level_db, speed_m_s};
 }
 
-drivers::decode::microphone::MicCalibration calibration_by_two_winds(
-    tools::calibration::Session& session, const std::vector<double>& speeds_m_s, LevelConversion& conversion,
+/// Known winds as report_point() had them: what the microphone read with its present settings, and the true speed.
+std::vector<drivers::decode::microphone::MicLevelAndSpeed> levels_at(tools::calibration::Session& session,
+                                                                     const std::string& points,
+                                                                     const LevelConversion& conversion) {
+  std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs;
+  for (const wind::judging::CalibrationPoint& point :
+       tools::calibration::value_or_refuse(wind::judging::parse_calibration_curve(points))) {
+    const auto level_db =
+        drivers::decode::microphone::mic_level_db(conversion.calibration, point.measured_m_s, conversion.noise_power);
+    if (!level_db) tools::calibration::refuse({"--points: where the microphone reads 0, its level is not known"});
+    session.report_point(point);
+    pairs.push_back({*level_db, point.true_m_s});
+  }
+  return pairs;
+}
+
+/// Through the slowest and the fastest of the known winds.
+drivers::decode::microphone::MicCalibration calibration_by_winds(
+    tools::calibration::Session& session, const LevelConversion& conversion,
     std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
-  for (const double speed_m_s : speeds_m_s) pairs.push_back(measure_level(session, speed_m_s, conversion));
   if (conversion.kind == drivers::decode::microphone::MicFitKind::kCurve) {
     tools::calibration::refuse(
         {"a curve cannot be fitted to two winds, and this microphone uses a curve: set its curve to \"\", or set its "
@@ -153,8 +173,9 @@ drivers::decode::microphone::MicCalibration calibration_by_two_winds(
   }
   std::ranges::sort(pairs, {}, &drivers::decode::microphone::MicLevelAndSpeed::speed_m_s);
   const drivers::decode::microphone::MicPowerLaw law = tools::calibration::value_or_refuse(
-      drivers::decode::microphone::mic_power_law_through(pairs[0], pairs[1], conversion.noise_power));
-  session.dialog().print("Fitted a power law through both winds.");
+      drivers::decode::microphone::mic_power_law_through(pairs.front(), pairs.back(), conversion.noise_power));
+  session.dialog().print(fmt::format("Fitted a power law through the winds of {:g} and {:g} m/s.",
+                                     pairs.front().speed_m_s, pairs.back().speed_m_s));
   return law;
 }
 
@@ -200,8 +221,10 @@ tools::calibration::Effect level_effect(const tools::calibration::Session& sessi
 void calibrate_microphone(const MicrophoneOptions& options) {
   const std::size_t speeds = options.speeds_m_s.size();
   const bool has_reference = !options.request.reference.empty();
-  if (has_reference == (speeds > 0) || (speeds > 0 && speeds != 2)) {
-    throw ExitError(kExitUsage, "the known wind is missing: give --reference, or --speed twice");
+  const bool has_points = !options.points.empty();
+  const bool is_one_of_two = speeds == 1 && options.request.as_json;  // a program gives both as --points
+  if (int{has_reference} + int{speeds > 0} + int{has_points} != 1 || (speeds > 0 && speeds != 2 && !is_one_of_two)) {
+    throw ExitError(kExitUsage, "the known wind is missing: give --reference, --speed twice, or --points");
   }
   const std::size_t parts = options.request.parts.size();
   if (!options.request.recording.empty() && (has_reference ? parts > 1 : parts != 2)) {
@@ -213,9 +236,17 @@ void calibrate_microphone(const MicrophoneOptions& options) {
 
   LevelConversion conversion;
   std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs;
+  if (has_points) {
+    conversion = level_conversion(drivers::microphone::mic_level_settings_of(session.sensor().values));
+    pairs = levels_at(session, options.points, conversion);
+  }
+  for (const double speed_m_s : options.speeds_m_s) pairs.push_back(measure_level(session, speed_m_s, conversion));
+  if (is_one_of_two) {
+    session.dialog().print("Now measure a second wind, twice as fast or half as fast.");
+    return;
+  }
   const drivers::decode::microphone::MicCalibration found =
-      has_reference ? calibration_beside(session, conversion, pairs)
-                    : calibration_by_two_winds(session, options.speeds_m_s, conversion, pairs);
+      has_reference ? calibration_beside(session, conversion, pairs) : calibration_by_winds(session, conversion, pairs);
 
   // The whole calibration is now in the driver's own parameters: [sensor.calibration] must not apply it twice.
   std::vector<settings::ConfigChange> wanted;
@@ -237,13 +268,20 @@ void add_calibrate_microphone(CLI::App& calibrate) {
       "more): whichever is better on pairs that were not used for the fit. Needs at least 8 pairs that span 1 m/s and\n"
       "3 dB. A fit to half an hour of light wind is poor in a storm, so record varied wind. With --speed twice: a "
       "power law\n"
-      "through two known winds. [sensor.calibration] of the microphone becomes neutral, except for its height\n"
-      "and north.\n"
+      "through two known winds; with --points: through the slowest and the fastest of winds that were measured "
+      "before.\n"
+      "[sensor.calibration] of the microphone becomes neutral, except for its height and north.\n"
+      "A running daemon computes its readings with the settings that it was started with: with --unchanged they are\n"
+      "taken from it, otherwise it must be stopped. The new values count when it is started again.\n"
+      "--json: also a single --speed, whose point is then one of --points.\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --for 3600\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --recording may.windlog\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --speed 3 --speed 9");
   auto options = std::make_shared<MicrophoneOptions>();
   add_calibration_request(*command, options->request, "60; with --reference 900");
+  add_calibration_json(*command, options->request);
+  command->add_flag("--unchanged", options->request.daemon_has_these_settings,
+                    "the running daemon has the settings of this microphone that the file has");
   command
       ->add_option("--reference", options->request.reference, "another sensor of the configuration, taken as correct")
       ->type_name("NAME");
@@ -252,6 +290,10 @@ void add_calibrate_microphone(CLI::App& calibrate) {
       ->check(CLI::Range(0.1, 100.0))
       ->expected(1)
       ->take_all();
+  command
+      ->add_option("--points", options->points,
+                   "reading:true in m/s, rising; readings with the microphone's present settings")
+      ->type_name("\"SAID:TRUE ...\"");
   command->callback([options] { calibrate_microphone(*options); });
 }
 

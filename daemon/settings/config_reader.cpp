@@ -196,15 +196,24 @@ class ConfigReader {
     const toml::table* const replaced = entry["replaces"].as_table();
     if (!name) mistake_in(entry, prefix, {"sensor", "is missing or not a text"});
     if (replaced == nullptr) mistake_in(entry, prefix, {"replaces", "is missing or not a table"});
-    const ParameterValues given = read_values(entry, prefix, page_calibration_keys(), {"sensor", "replaces"});
+    const std::string driver_name = replaced == nullptr ? "" : (*replaced)["driver"].value_or(std::string());
+    const auto* const driver = drivers::sensor::find_driver(driver_name);
     if (!name || replaced == nullptr) return;
+    if (driver == nullptr) {
+      config.page_calibrations.push_back(
+          {.sensor = *name, .values = {}, .why_not = "it is of a driver that this version does not have"});
+      return;
+    }
+    const std::span<const Parameter> keys = page_calibration_keys(*driver);
+    const ParameterValues given = read_values(entry, prefix, keys, {"sensor", "replaces"});
     PageCalibration calibration{.sensor = *name, .values = {}, .why_not = {}};
-    std::vector<std::pair<std::string_view, ParameterValue>> values;
-    for (const Parameter& key : page_calibration_keys()) {
+    std::vector<ConfigChange> values;
+    for (const Parameter& key : keys) {
       if (!entry.contains(key.name)) continue;
-      values.emplace_back(key.name, given.all().at(std::string(key.name)));
+      values.push_back(place_of_page_key(key.name));
+      values.back().value = given.all().at(std::string(key.name));
       calibration.values +=
-          fmt::format("{}{} = {}", calibration.values.empty() ? "" : ", ", key.name, toml_value(values.back().second));
+          fmt::format("{}{} = {}", calibration.values.empty() ? "" : ", ", key.name, toml_value(values.back().value));
     }
     const auto sensor = std::ranges::find(config.sensors, *name, &SensorConfig::name);
     if (sensor == config.sensors.end() || sensor->origin.empty()) {
@@ -224,10 +233,10 @@ class ConfigReader {
     });
   }
 
-  void calibrate(SensorConfig& sensor, std::span<const std::pair<std::string_view, ParameterValue>> values,
-                 const toml::table& entry, const std::string& prefix) {
+  void calibrate(SensorConfig& sensor, std::span<const ConfigChange> values, const toml::table& entry,
+                 const std::string& prefix) {
     ParameterValues& all = sensor.by_name.at(kCalibrationTable);
-    for (const auto& [key, value] : values) all.set(key, value);
+    for (const ConfigChange& one : values) (one.table.empty() ? sensor.values : all).set(one.key, one.value);
     const auto table = std::ranges::find(sensor_tables(), kCalibrationTable, &SensorTable::name);
     for (const ParameterError& error : table->fill(sensor, all)) mistake_in(entry, prefix, error);
   }

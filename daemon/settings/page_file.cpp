@@ -130,6 +130,13 @@ std::string name_of(const toml::table& entry) {
   return entry["name"].value<std::string>().value_or(entry["driver"].value_or(std::string()));
 }
 
+/// How a microphone's own calibration is called beside [sensor.calibration], which has keys of the same names.
+struct LevelKey {
+  std::string_view of_driver, of_page;
+};
+constexpr std::array kLevelKeys = {LevelKey{"gain", "level_gain"}, LevelKey{"exponent", "level_exponent"},
+                                   LevelKey{"curve", "level_curve"}};
+
 // The lists of the file.
 constexpr const char* kSensors = "sensor";
 constexpr const char* kCalibrations = "calibration";
@@ -453,8 +460,8 @@ Result<std::string, Failure> without_sensor(std::string_view page_text, std::str
                        {fmt::format("the page has set up no sensor \"{}\"", name), FailureKind::kNoInput});
 }
 
-std::span<const Parameter> page_calibration_keys() {
-  static const std::vector<Parameter> kKeys = [] {
+std::span<const Parameter> page_calibration_keys(const drivers::sensor::DriverDescription& driver) {
+  static const std::vector<Parameter> kFactors = [] {
     std::vector<Parameter> keys;
     for (const Parameter& key : std::ranges::find(sensor_tables(), kCalibrationTable, &SensorTable::name)->parameters) {
       if (key.name == "gain" || key.name == "offset" || key.name == "curve" || key.name == "north_offset")
@@ -462,16 +469,41 @@ std::span<const Parameter> page_calibration_keys() {
     }
     return keys;
   }();
-  return kKeys;
+  if (driver.calibration != drivers::sensor::CalibrationMeans::kSoundLevel) return kFactors;
+  static const std::vector<Parameter> kWithLevel = [&driver] {  // one driver measures sound
+    std::vector<Parameter> keys = kFactors;
+    for (Parameter key : driver.parameters) {
+      const auto* const level = std::ranges::find(kLevelKeys, key.name, &LevelKey::of_driver);
+      if (level == kLevelKeys.end()) continue;
+      key.name = level->of_page;
+      keys.push_back(key);
+    }
+    return keys;
+  }();
+  return kWithLevel;
+}
+
+ConfigChange place_of_page_key(std::string_view name) {
+  const auto* const level = std::ranges::find(kLevelKeys, name, &LevelKey::of_page);
+  if (level != kLevelKeys.end()) return {"", std::string(level->of_driver), {}};
+  return {std::string(kCalibrationTable), std::string(name), {}};
+}
+
+std::string page_key_of(const ConfigChange& place) {
+  const auto* const level = std::ranges::find(kLevelKeys, place.key, &LevelKey::of_driver);
+  return place.table.empty() && level != kLevelKeys.end() ? std::string(level->of_page) : place.key;
+}
+
+const ParameterValue& value_at(const SensorConfig& sensor, const ConfigChange& place) {
+  return (place.table.empty() ? sensor.values : sensor.by_name.at(kCalibrationTable)).all().at(place.key);
 }
 
 std::vector<std::pair<std::string_view, ParameterValue>> replaced_by_page(const SensorConfig& sensor) {
-  const ParameterValues& values = sensor.by_name.at(kCalibrationTable);
   std::vector<std::pair<std::string_view, ParameterValue>> replaced = {
       {"driver", std::string(sensor.driver->name)},  // another device may have its name now
-      {"unit", values.text("unit")}};
-  for (const Parameter& key : page_calibration_keys())
-    replaced.emplace_back(key.name, values.all().at(std::string(key.name)));
+      {"unit", sensor.by_name.at(kCalibrationTable).text("unit")}};
+  for (const Parameter& key : page_calibration_keys(*sensor.driver))
+    replaced.emplace_back(key.name, value_at(sensor, place_of_page_key(key.name)));
   return replaced;
 }
 
@@ -479,18 +511,19 @@ Result<std::string, Failure> with_calibration(std::string_view page_text, const 
                                               std::span<const ConfigChange> changes) {
   try {
     toml::table root = tables::parse_toml(page_text);
-    toml::table* table = table_in(root, kSensors, [&](const toml::table& one) { return name_of(one) == sensor; });
-    if (table != nullptr) {
-      table->insert(kCalibrationTable, toml::table());
-      table = (*table)[kCalibrationTable].as_table();
+    if (toml::table* const entry =
+            table_in(root, kSensors, [&](const toml::table& one) { return name_of(one) == sensor; })) {
+      entry->insert(kCalibrationTable, toml::table());
+      toml::table* const table = (*entry)[kCalibrationTable].as_table();
+      if (table == nullptr) return Failure{"the page's file has a calibration that is no table", FailureKind::kBadData};
+      for (const ConfigChange& change : changes) put(change.table.empty() ? *entry : *table, change.key, change.value);
     } else {
       const auto known = std::ranges::find(config.sensors, sensor, &SensorConfig::name);
       if (known == config.sensors.end() || known->origin.empty())
         return Failure{fmt::format("there is no sensor \"{}\" to calibrate", sensor), FailureKind::kNoInput};
-      table = &calibration_of_configured(root, *known);
+      toml::table& table = calibration_of_configured(root, *known);
+      for (const ConfigChange& change : changes) put(table, page_key_of(change), change.value);
     }
-    if (table == nullptr) return Failure{"the page's file has a calibration that is no table", FailureKind::kBadData};
-    for (const ConfigChange& change : changes) put(*table, change.key, change.value);
     return {boost::system::in_place_value, written(root)};
   } catch (const toml::parse_error&) {
     return not_toml();

@@ -70,8 +70,17 @@ std::string with_sensor(std::string_view page_text, const PageSensor& sensor);
 /// The page's file without a sensor; fails if there is none of this name, or the text is not TOML. Pure.
 Result<std::string, Failure> without_sensor(std::string_view page_text, std::string_view name);
 
-/// The keys of [sensor.calibration] that the page may set: what a calibration finds.
-std::span<const Parameter> page_calibration_keys();
+/// The values that a calibration on the page may set, by their names there: those of [sensor.calibration] that a
+/// calibration finds and, of a driver whose sensors measure sound, its own gain, exponent and curve as level_gain,
+/// level_exponent and level_curve.
+std::span<const Parameter> page_calibration_keys(const drivers::sensor::DriverDescription& driver);
+
+/// The place of such a name in a sensor's entry, without a value; and the name of a place. Pure.
+ConfigChange place_of_page_key(std::string_view name);
+std::string page_key_of(const ConfigChange& place);
+
+/// The value that a sensor has at a place. Throws std::out_of_range if its driver has no such key.
+const ParameterValue& value_at(const SensorConfig& sensor, const ConfigChange& place);
 
 /// The page's file with values of page_calibration_keys() for a sensor: in the sensor's own entry if the page has set
 /// it up, otherwise as a [[calibration]] of the sensor of `config`, which is the configuration without the page. There

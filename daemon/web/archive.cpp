@@ -321,7 +321,7 @@ struct Archive::Shared {
     return send(*found->file);
   }
 
-  PageSetup setup() const { return {settings.configuration, settings.page, settings.taking_over}; }
+  PageSetup setup() const { return {settings.configuration, settings.page, settings.taking_over, settings.sensors}; }
 
   /// What this program prints, for a request that waits for it.
   ChildOutput printed_by(std::initializer_list<std::string> words) const {

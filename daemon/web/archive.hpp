@@ -23,7 +23,8 @@ struct ArchiveSettings {
   std::filesystem::path configuration = {};  ///< empty: the built-in one
   std::string stream = {};                   ///< where the daemon's stream listens; empty: as configured
   std::filesystem::path page = {};           ///< what the page has set up; empty: it sets up nothing
-  TakingOver taking_over = {};               ///< of what the page has changed
+  std::vector<settings::SensorConfig> sensors = {};       ///< as the daemon has them open
+  TakingOver taking_over = {};                            ///< of what the page has changed
   std::vector<std::string> program = {"/proc/self/exe"};  ///< the program that carries out jobs
 };
 

@@ -14,7 +14,7 @@ struct CalibrationOrder {
   /// More readings are no better, and the command's lines stay few.
   static constexpr double kMaxDuration_s = 1800.0;
 
-  std::string calibration = {};  ///< "zero", "span" or "north"
+  std::string calibration = {};  ///< "zero", "span", "north" or "microphone"
   std::optional<double> duration_s = {};
   // What is known: one of these, but for zero none.
   std::optional<double> bearing_deg = {};
@@ -27,7 +27,7 @@ struct CalibrationOrder {
 /// that no name can be taken for an option. Pure.
 std::vector<std::string> words_of(const CalibrationOrder& order, const std::string& sensor);
 
-/// The values that a calibration has found, and those that it began from, by their keys in [sensor.calibration]; as
+/// The values that a calibration has found, and those that it began from, by their names in page_calibration_keys(); as
 /// they are typed after "KEY = ".
 struct FoundCalibration {
   using Values = std::vector<std::pair<std::string, std::string>>;

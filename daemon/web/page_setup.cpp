@@ -68,8 +68,12 @@ std::string for_the_page(const std::string& described) {
   return json_text(ordered_json{{"drivers", std::move(all)}}, 2) + "\n";
 }
 
-PageSetup::PageSetup(fs::path configuration, fs::path page, TakingOver taking_over)
-    : configuration_(std::move(configuration)), page_(std::move(page)), taking_over_(std::move(taking_over)) {}
+PageSetup::PageSetup(fs::path configuration, fs::path page, TakingOver taking_over,
+                     std::span<const settings::SensorConfig> open)
+    : configuration_(std::move(configuration)),
+      page_(std::move(page)),
+      taking_over_(std::move(taking_over)),
+      open_(open) {}
 
 fs::path PageSetup::before() const {
   return page_.string() + ".before";
@@ -166,7 +170,12 @@ std::optional<http::Response> PageSetup::calibration_refusal(const std::string& 
   if (!installed) return not_done(installed.error().message);
   for (const std::string* const name : {&sensor, &reference}) {
     if (name == &reference && name->empty()) continue;
-    if (configured(installed->with_page, *name) == nullptr) return no_sensor(*name);
+    const settings::SensorConfig* const known = configured(installed->with_page, *name);
+    if (known == nullptr) return no_sensor(*name);
+    const auto open = std::ranges::find(open_, *name, &settings::SensorConfig::name);
+    if (open != open_.end() && (open->driver != known->driver || open->values.all() != known->values.all()))
+      return not_done(
+          fmt::format("the configuration of {} was changed since the daemon was started: start it again", *name));
   }
   return std::nullopt;
 }
@@ -176,16 +185,17 @@ http::Response PageSetup::calibrate(const std::string& sensor, const FoundCalibr
   if (!installed) return not_done(installed.error().message);
   const settings::SensorConfig* const known = configured(installed->with_page, sensor);
   if (known == nullptr) return no_sensor(sensor);
-  const auto& now = known->by_name.at(settings::kCalibrationTable).all();
   std::vector<settings::ConfigChange> changes;
   for (std::size_t i = 0; i < found.after.size(); ++i) {
     const auto& [name, typed] = found.after[i];
-    const auto keys = settings::page_calibration_keys();
+    const auto keys = settings::page_calibration_keys(*known->driver);
     const auto key = std::ranges::find(keys, name, &Parameter::name);
     if (key == keys.end()) return not_done(name + ": is not found by a calibration");
-    if (typed_value(*key, found.before[i].second) != now.at(name))
+    settings::ConfigChange change = settings::place_of_page_key(name);
+    if (typed_value(*key, found.before[i].second) != settings::value_at(*known, change))
       return not_done(fmt::format("{} was changed while {} was calibrated: calibrate it again", name, sensor));
-    changes.push_back({std::string(settings::kCalibrationTable), name, typed_value(*key, typed)});
+    change.value = typed_value(*key, typed);
+    changes.push_back(std::move(change));
     if (changes.back().value.index() != key->default_value.index())
       return not_done(fmt::format("{}: is \"{}\", which is no number", name, typed));
   }

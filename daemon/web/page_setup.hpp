@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,9 @@ struct TakingOver {
 /// them, and keeps values of [look] and of scenes. The state before stays beside it as FILE.before. Waits for the disk.
 class PageSetup {
  public:
-  PageSetup(std::filesystem::path configuration, std::filesystem::path page, TakingOver taking_over);
+  /// `open`: the sensors as the daemon has them open; must outlive this.
+  PageSetup(std::filesystem::path configuration, std::filesystem::path page, TakingOver taking_over,
+            std::span<const settings::SensorConfig> open = {});
 
   /// The names of the sensors that the page has set up, and of those of the configuration that it has calibrated, and
   /// whether the last change was of these.
@@ -39,8 +42,8 @@ class PageSetup {
   http::Response calibrate(const std::string& sensor, const FoundCalibration& found) const;
   /// Removes the page's calibration of a sensor of the configuration.
   http::Response forget_calibration(const std::string& sensor) const;
-  /// Why a sensor cannot be calibrated beside `reference` (empty: none); nullopt if both exist and a result may be
-  /// kept.
+  /// Why a sensor cannot be calibrated beside `reference` (empty: none); nullopt if both exist with the settings that
+  /// the daemon has them open with, and a result may be kept.
   std::optional<http::Response> calibration_refusal(const std::string& sensor, const std::string& reference) const;
 
   /// The names of the values of [look] and of scenes that are kept, and whether the last change was of these.
@@ -72,6 +75,7 @@ class PageSetup {
 
   std::filesystem::path configuration_, page_;
   TakingOver taking_over_;
+  std::span<const settings::SensorConfig> open_;
 };
 
 }  // namespace yuragi::daemon::web

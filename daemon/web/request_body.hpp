@@ -69,8 +69,8 @@ Result<wire::ReloadCommand, Failure> reload_command_of(std::string_view json);
 /// {"driver": name, "parameters": {key: value}}, and if it is to be added "name"
 Result<settings::PageSensor, Failure> sensor_of(std::string_view json, bool has_name);
 
-/// {"calibration": "zero", "for_s": 30}; "north" with "bearing_deg" or "reference"; "span" with "speed_m_s",
-/// "reference", or "points", which are "MEASURED:TRUE MEASURED:TRUE" in m/s, rising
+/// {"calibration": "zero", "for_s": 30}; "north" with "bearing_deg" or "reference"; "span" or "microphone" with
+/// "speed_m_s", "reference", or "points", which are "MEASURED:TRUE MEASURED:TRUE" in m/s, rising
 Result<CalibrationOrder, Failure> calibration_order_of(std::string_view json);
 
 /// {"before": {key: value}, "after": {key: value}} with the same keys in both

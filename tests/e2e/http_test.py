@@ -16,6 +16,7 @@ import tarfile
 import tempfile
 import time
 import unittest
+import unittest.mock
 import urllib.error
 import urllib.parse
 import urllib.request
@@ -768,6 +769,53 @@ class Http(unittest.TestCase):
         self.assertEqual(job["state"], "failed")
         self.assertIn('the sensor "roof" was lost meanwhile', job["message"])
         self.assertFalse(os.path.exists(self.page))
+
+    def sound_of_wind(self, speed_m_s):
+        """A microphone in a wind of this speed, which the sound card of tests/support delivers."""
+        return Program(os.path.join(os.path.dirname(YURAGI), "yuragi-sim"), "microphone", "--listen", self.card, "--speed", str(speed_m_s),
+                       "--turbulence", "0", "--exponent", "1.6", "--noise", "-120")
+
+    def test_a_microphone_is_calibrated_while_it_runs(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.card = os.path.join(folder, "card")
+        library = os.path.join(os.path.dirname(YURAGI), "../lib/libasound_module_pcm_windsim.so")
+        cards = os.path.join(folder, "asound.conf")
+        with open(cards, "w", encoding="utf-8") as file:
+            file.write(f'pcm.default {{ type null }}\npcm_type.windsim {{ lib "{os.path.abspath(library)}" }}\n'
+                       f'pcm.windmic {{ type windsim path "{self.card}" channels 1 rate 48000 }}\n')
+        self.enterContext(unittest.mock.patch.dict(os.environ, ALSA_CONFIG_PATH=cards))
+        microphone = '[[sensor]]\nname = "roof"\ndriver = "microphone"\ndevice = "windmic"\nnoise_floor = -150\n'
+        with self.sound_of_wind(4):
+            daemon = self.start_daemon_for_setup(microphone)
+            listed = json.loads(self.ask("/api/v1/calibrations", **self.rights)[1])["sensors"][0]
+            self.assertEqual([(way["calibration"], way["given"]) for way in listed["ways"]], [("microphone", "reference"), ("microphone", "speed")])
+            self.assertEqual(listed["now"]["level_exponent"], 2.0)
+            self.wait_for("/api/v1/status", 200, "not calibrated")
+            soft = self.calibrated(calibration="microphone", speed_m_s=4, for_s=5)
+        self.assertIsNone(soft["after"], "one wind is not enough")
+        with self.sound_of_wind(10):
+            self.wait_for("/api/v1/status", 200, '"state": "live"')
+            loud = self.calibrated(calibration="microphone", speed_m_s=10, for_s=5)
+            points = [one["points"][0] for one in (soft, loud)]
+            text = " ".join(f"{point['measured_m_s']}:{point['true_m_s']}" for point in points)
+            found = self.calibrated(calibration="microphone", points=text)
+            self.assertAlmostEqual(found["after"]["level_exponent"], 1.6, delta=0.1)
+            self.assertEqual(found["before"]["level_exponent"], 2.0)
+            self.change_and_wait(daemon, "/roof/calibration", {key: found[key] for key in ("before", "after")})
+            self.wait_for("/api/v1/status", 200, '"state": "live"')
+            status = self.ask("/api/v1/status")[1]
+            self.assertAlmostEqual(json.loads(status)["sensors"][0]["speed_m_s"], 10.0, delta=1.5)
+            self.assertNotIn("not calibrated", status)
+            self.assertIn("calibrated on the page: level_gain = ", self.check_config().stdout)
+
+            # The level is computed with the settings of the file, which must be those that the daemon has.
+            with open(self.file, encoding="utf-8") as config:
+                changed = config.read().replace("noise_floor = -150", "noise_floor = -140", 1)
+            with open(self.file, "w", encoding="utf-8") as config:
+                config.write(changed)
+            code, answer = self.set_up("/roof/calibrate", {"calibration": "microphone", "speed_m_s": 4, "for_s": 5})
+            self.assertEqual(code, 409)
+            self.assertIn("start it again", answer["detail"])
 
     def test_nothing_is_calibrated_without_rights_or_with_a_mistake(self):
         self.start_daemon_for_setup('[[sensor]]\nname = "mast"\ndriver = "synthetic"\n')

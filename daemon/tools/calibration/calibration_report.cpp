@@ -21,7 +21,7 @@ ordered_json json_of(const ParameterValue& value) {
 
 ordered_json json_of(std::span<const settings::ConfigChange> values) {
   ordered_json json = ordered_json::object();
-  for (const settings::ConfigChange& one : values) json[one.key] = json_of(one.value);
+  for (const settings::ConfigChange& one : values) json[settings::page_key_of(one)] = json_of(one.value);
   return json;
 }
 
@@ -106,8 +106,8 @@ ordered_json calibrations_json(const settings::Config& config) {
                           {"preparation", way.preparation}});
     }
     ordered_json now = ordered_json::object();
-    for (const Parameter& key : settings::page_calibration_keys())
-      now[key.name] = json_of(sensor.by_name.at(settings::kCalibrationTable).all().at(std::string(key.name)));
+    for (const Parameter& key : settings::page_calibration_keys(*sensor.driver))
+      now[key.name] = json_of(settings::value_at(sensor, settings::place_of_page_key(key.name)));
     all.push_back({{"sensor", sensor.name},
                    {"driver", sensor.driver->name},
                    {"now", std::move(now)},

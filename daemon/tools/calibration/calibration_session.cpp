@@ -33,10 +33,6 @@ Stretch parse_part(const std::string& text) {
   return {.from_s = from_s, .to_s = to_s};
 }
 
-ParameterValue value_of(const settings::SensorConfig& sensor, const settings::ConfigChange& change) {
-  return (change.table.empty() ? sensor.values : sensor.by_name.at(settings::kCalibrationTable)).all().at(change.key);
-}
-
 std::string key_of(const settings::ConfigChange& change) {
   return change.table.empty() ? change.key : change.table + "." + change.key;
 }
@@ -120,7 +116,7 @@ void Session::open_source() {
   std::vector<const settings::SensorConfig*> sensors = {&sensor()};
   if (reference_) sensors.push_back(reference());
   const std::string address = request_.connect.value_or(config_.stream.listen);
-  source_ = (is_live() ? make_live_source(std::move(sensors), address, clock_)
+  source_ = (is_live() ? make_live_source(std::move(sensors), address, clock_, request_.daemon_has_these_settings)
                        : make_recorded_source(std::move(sensors), request_.recording))
                 .value();
   dialog_.print(fmt::format("Calibrating the sensor \"{}\" ({}) of {}, from {}.", sensor().name, sensor().driver->name,
@@ -189,11 +185,12 @@ std::string Session::progress_line(double elapsed_s, const CollectedReadings& co
 }
 
 ParameterValue Session::value_now(const settings::ConfigChange& change) const {
-  return value_of(sensor(), change);
+  return settings::value_at(sensor(), change);
 }
 
 ParameterValue Session::value_in_file(const settings::ConfigChange& change) const {
-  return value_of(*std::ranges::find(configuration_.sensors, sensor().name, &settings::SensorConfig::name), change);
+  return settings::value_at(*std::ranges::find(configuration_.sensors, sensor().name, &settings::SensorConfig::name),
+                            change);
 }
 
 void Session::report_point(const wind::judging::CalibrationPoint& point) {
@@ -222,8 +219,8 @@ Effect Session::speed_effect(std::span<const settings::ConfigChange> wanted,
 
 /// Values that the page has set and this calibration leaves as they are.
 void Session::take_over_page(std::vector<settings::ConfigChange>& wanted) const {
-  for (const Parameter& key : settings::page_calibration_keys()) {
-    settings::ConfigChange change{std::string(settings::kCalibrationTable), std::string(key.name), {}};
+  for (const Parameter& key : settings::page_calibration_keys(*sensor().driver)) {
+    settings::ConfigChange change = settings::place_of_page_key(key.name);
     change.value = value_now(change);
     const bool is_wanted = std::ranges::any_of(
         wanted, [&](const settings::ConfigChange& one) { return one.table == change.table && one.key == change.key; });

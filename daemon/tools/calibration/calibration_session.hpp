@@ -25,9 +25,10 @@ struct Request {
   std::string sensor;     ///< empty: the only one in the file
   std::string reference;  ///< a sensor whose readings are taken as true; empty: none
   std::optional<double> duration_s;
-  std::filesystem::path recording;     ///< empty: live
-  std::vector<std::string> parts;      ///< "FROM,TO" of the recording, one for each stretch; none: all of it
-  std::optional<std::string> connect;  ///< where the daemon listens; empty: as configured
+  std::filesystem::path recording;         ///< empty: live
+  std::vector<std::string> parts;          ///< "FROM,TO" of the recording, one for each stretch; none: all of it
+  std::optional<std::string> connect;      ///< where the daemon listens; empty: as configured
+  bool daemon_has_these_settings = false;  ///< make_live_source()
   bool takes_yes = false;
   bool is_dry_run = false;
   bool as_json = false;  ///< a dry run that is printed as a Report

@@ -280,7 +280,8 @@ class RecordedSource final : public Source {
 }  // namespace
 
 Result<std::unique_ptr<Source>, Failure> make_live_source(SensorConfigs sensors, const std::string& address,
-                                                          const drivers::sensor::Clock& clock) {
+                                                          const drivers::sensor::Clock& clock,
+                                                          bool daemon_has_these_settings) {
   auto client = connect_to_daemon(address);
   if (!client) return std::make_unique<DeviceSource>(std::move(sensors), clock);
 
@@ -299,9 +300,12 @@ Result<std::unique_ptr<Source>, Failure> make_live_source(SensorConfigs sensors,
       obstacle = "plays a recording; use --recording with it";
     } else if (status->readings > 0 && !status->raw_speed_m_s) {
       obstacle = "is an older version, which sends calibrated readings only";
-    } else if (sensor->driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
+    } else if (sensor->driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel &&
+               !daemon_has_these_settings) {
       // Its readings were computed with the gain and exponent, or the curve, of when the daemon was started.
-      obstacle = "uses the microphone, perhaps with another calibration than the file has now";
+      obstacle =
+          "uses the microphone, perhaps with other settings than the file has now (add --unchanged if they were not "
+          "changed since it was started)";
     }
     if (!obstacle.empty()) {
       return unavailable(fmt::format("the daemon at {} {}: stop it for the calibration", address, obstacle));

@@ -56,11 +56,13 @@ class Source {
 };
 
 /// Live readings: from the running daemon at `address` if it has all of these sensors, else from the devices
-/// themselves. `sensors` and `clock` must outlive it. Fails if a daemon has the sensors, but does not send raw
-/// readings.
+/// themselves. `sensors` and `clock` must outlive it. `daemon_has_these_settings`: the daemon is known to have a
+/// microphone open with the settings that are given here, from which the level is computed. Fails if a daemon has the
+/// sensors, but does not send raw readings, or if that is not known of a microphone.
 Result<std::unique_ptr<Source>, Failure> make_live_source(std::vector<const settings::SensorConfig*> sensors,
                                                           const std::string& address,
-                                                          const drivers::sensor::Clock& clock);
+                                                          const drivers::sensor::Clock& clock,
+                                                          bool daemon_has_these_settings = false);
 
 /// A recording. Fails if it cannot be read or has not all of these sensors.
 Result<std::unique_ptr<Source>, Failure> make_recorded_source(std::vector<const settings::SensorConfig*> sensors,

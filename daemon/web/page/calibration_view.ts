@@ -9,8 +9,6 @@ import { number_text, plain_number_text, wind_text, word_of } from "./wording";
 
 const PATIENCE_MS = 60_000; // the daemon asks a program of its own
 const NUMBER = "{number}"; // in a preparation: the bearing or the speed
-/** A microphone is calibrated without the daemon, which uses it. */
-const OFFERED = ["zero", "span", "north"];
 
 type Point = CalibrationState["points"][number];
 
@@ -83,7 +81,7 @@ export class CalibrationView {
     return { sensor, way: sensor && this.ways_of(sensor)[this.way.selectedIndex] };
   }
 
-  private ways_of = ({ ways }: CalibratedSensor) => ways.filter(({ calibration, given }) => OFFERED.includes(calibration) && (given !== "reference" || this.sensors.length > 1));
+  private ways_of = ({ ways }: CalibratedSensor) => ways.filter(({ given }) => given !== "reference" || this.sensors.length > 1);
 
   private choose_sensor(): void {
     const { sensor } = this.chosen();
@@ -93,7 +91,7 @@ export class CalibrationView {
     this.reference.replaceChildren(...this.sensors.filter((one) => one !== sensor).map((one) => element("option", { value: one.sensor }, one.sensor)));
     this.steps.hidden = ways.length === 0;
     this.choose_way();
-    if (ways.length === 0) this.refuse(sensor?.ways.length ? texts.calibrate_by_command : texts.cannot_calibrate, language);
+    if (ways.length === 0) this.refuse(texts.cannot_calibrate, language);
   }
 
   private choose_way(): void {

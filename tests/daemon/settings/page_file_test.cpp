@@ -148,6 +148,37 @@ Config with_calibrated(const Config& config, const std::string& page) {
   return with_page(config, page, "page.toml");
 }
 
+TEST(PageFile, ACalibrationOfAMicrophoneIsOfItsLevel) {
+  const std::string mic = "[[sensor]]\nname = \"mic\"\ndriver = \"microphone\"\n";
+  const std::vector<ConfigChange> changes = {{"", "gain", 31.0}, {"", "exponent", 1.6}, {"calibration", "gain", 1.0}};
+  const Config config = parse_config(mic + "[sensor.calibration]\ngain = 1.2\n", "a.toml");
+  const std::string page = *with_calibration("", config, "mic", changes);
+  const Config both = with_calibrated(config, page);
+  EXPECT_EQ(both.sensors[0].values.number("gain"), 31.0);
+  EXPECT_EQ(both.sensors[0].values.number("exponent"), 1.6);
+  EXPECT_EQ(both.sensors[0].calibration.gain, 1.0);
+  EXPECT_EQ(both.page_calibrations.at(0).values, "gain = 1.0, level_gain = 31.0, level_exponent = 1.6");
+  const Config later =
+      with_calibrated(parse_config(mic + "gain = 28\n[sensor.calibration]\ngain = 1.2\n", "a.toml"), page);
+  EXPECT_EQ(later.sensors[0].values.number("gain"), 28.0) << "a later calibration of the file counts";
+  EXPECT_THAT(later.page_calibrations.at(0).why_not, HasSubstr("was changed since"));
+
+  // In the entry of a microphone that the page has set up.
+  const std::string own = with_sensor("", {.name = "mic", .driver = "microphone", .values = {{"gain", "28"}}});
+  const Config set_up = with_calibrated(default_config(), *with_calibration(own, default_config(), "mic", changes));
+  EXPECT_EQ(set_up.sensors.back().values.number("gain"), 31.0);
+  EXPECT_EQ(set_up.sensors.back().values.number("exponent"), 1.6);
+
+  // A cup has no level, whatever a damaged file says.
+  const std::string cup = "[[sensor]]\nname = \"cup\"\ndriver = \"synthetic\"\n";
+  std::string damaged = *with_calibration("", parse_config(cup, "a.toml"), "cup", {{{"calibration", "gain", 1.1}}});
+  damaged.insert(damaged.find("sensor = "), "level_gain = 3.0\n");
+  EXPECT_THROW(with_calibrated(parse_config(cup, "a.toml"), damaged), ConfigError);
+  damaged = page;
+  damaged.replace(damaged.find("microphone"), 10, "gone");
+  EXPECT_THAT(with_calibrated(config, damaged).page_calibrations.at(0).why_not, HasSubstr("driver"));
+}
+
 TEST(PageFile, ACalibrationCountsUntilTheConfigurationHasAnother) {
   const std::string mast = "[[sensor]]\nname = \"mast\"\ndriver = \"synthetic\"\n";
   const Config config = parse_config(mast + "[sensor.calibration]\noffset = 0.1\nheight = 4\n", "a.toml");

@@ -103,6 +103,20 @@ TEST_F(PageCalibrationTest, WithoutATokenNothingIsCalibrated) {
   EXPECT_EQ(setup().calibration_refusal("mast", "")->status, 409U);
 }
 
+TEST_F(PageCalibrationTest, ASensorWhoseSettingsWereChangedSinceTheStartIsNotCalibrated) {
+  const std::vector<settings::SensorConfig> open = settings::load_config(config_).sensors;
+  const PageSetup setup(config_, page_, {.restart = [] {}, .reload = [] {}}, open);
+  EXPECT_FALSE(setup.calibration_refusal("mast", ""));
+  write(config_,
+        std::string(kMast) + "[sensor.calibration]\ngain = 1.1\n[[sensor]]\nname = \"roof\"\ndriver = \"nmea\"\n");
+  EXPECT_FALSE(setup.calibration_refusal("mast", "roof")) << "a calibration counts at once, and roof is not open";
+  write(config_, std::string(kMast) + "speed = 4.5\n");
+  const auto refusal = setup.calibration_refusal("mast", "");
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->status, 409U);
+  EXPECT_THAT(refusal->body, HasSubstr("mast was changed since the daemon was started"));
+}
+
 class CalibrationJobTest : public PageCalibrationTest {
  protected:
   /// What would be called, a word a line.
@@ -138,6 +152,8 @@ TEST_F(CalibrationJobTest, NothingReachesTheCommandButNumbersAndNamesOfSensors) 
               HasSubstr("span\n--json\n--sensor=--help\n--reference=mast\n"));
   EXPECT_THAT(command_of("mast", {.calibration = "span", .points = {{3.1, 3.0}, {10.4, 11.0}}}),
               HasSubstr("--points=3.1:3 10.4:11\n"));
+  EXPECT_THAT(command_of("mast", {.calibration = "microphone", .speed_m_s = 4.0}),
+              HasSubstr("microphone\n--json\n--sensor=mast\n--unchanged\n--speed=4\n"));
   EXPECT_EQ(command_of("roof", {.calibration = "zero"}), "404");
   EXPECT_EQ(command_of("mast", {.calibration = "north", .reference = "roof"}), "404");
   EXPECT_EQ(command_of("mast\n--yes", {.calibration = "zero"}), "404");

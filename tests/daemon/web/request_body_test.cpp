@@ -109,8 +109,12 @@ TEST(CalibrationBody, EachCalibrationTakesWhatIsKnown) {
   EXPECT_EQ(calibration_order_of(R"({"calibration":"span","reference":"mast"})")->reference, "mast");
   EXPECT_EQ(calibration_order_of(R"({"calibration":"span","speed_m_s":3})")->speed_m_s, 3.0);
   EXPECT_EQ(calibration_order_of(R"({"calibration":"span","points":"3.1:3 10.4:11"})")->points.size(), 2U);
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"microphone","reference":"mast"})")->reference, "mast");
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"microphone","speed_m_s":3})")->speed_m_s, 3.0);
+  EXPECT_EQ(calibration_order_of(R"({"calibration":"microphone","points":"3.1:3 10.4:11"})")->points.size(), 2U);
   for (const char* const mistaken :
-       {"{}", R"({"calibration":"microphone","reference":"mast"})", R"({"calibration":"--yes"})",
+       {"{}", R"({"calibration":"microphone"})", R"({"calibration":"microphone","bearing_deg":3})",
+        R"({"calibration":"microphone","speed_m_s":3,"reference":"mast"})", R"({"calibration":"--yes"})",
         R"({"calibration":"zero","reference":"mast"})", R"({"calibration":"north"})",
         R"({"calibration":"north","bearing_deg":361})", R"({"calibration":"north","bearing_deg":"214"})",
         R"({"calibration":"north","bearing_deg":1,"reference":"mast"})", R"({"calibration":"span","bearing_deg":1})",

@@ -95,8 +95,8 @@ export const english = {
   calibration_ways: {
     "zero-nothing": "Zero: in still air", "span-speed": "Speed: in a known wind", "span-reference": "Speed: beside another sensor",
     "north-bearing": "North: by a landmark", "north-reference": "North: beside another vane",
+    "microphone-speed": "Microphone: in known winds", "microphone-reference": "Microphone: beside another sensor",
   },
-  calibrate_by_command: "A microphone is calibrated by the command `yuragi calibrate microphone`, while the daemon is stopped.",
   cannot_calibrate: "This sensor cannot be calibrated.",
   known_speed: "Speed of the wind (m/s)",
   known_bearing: "Bearing of the landmark, clockwise from true north (degrees)",

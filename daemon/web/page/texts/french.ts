@@ -90,8 +90,8 @@ export const french: Texts = {
   calibration_ways: {
     "zero-nothing": "Zéro : dans l’air immobile", "span-speed": "Vitesse : dans un vent connu", "span-reference": "Vitesse : à côté d’un autre capteur",
     "north-bearing": "Nord : par un repère", "north-reference": "Nord : à côté d’une autre girouette",
+    "microphone-speed": "Microphone : dans des vents connus", "microphone-reference": "Microphone : à côté d’un autre capteur",
   },
-  calibrate_by_command: "Un microphone s’étalonne par la commande `yuragi calibrate microphone`, pendant que le démon est arrêté.",
   cannot_calibrate: "Ce capteur ne peut pas être étalonné.",
   known_speed: "Vitesse du vent (m/s)",
   known_bearing: "Azimut du repère, dans le sens horaire depuis le nord géographique (degrés)",

@@ -89,8 +89,8 @@ export const german: Texts = {
   calibration_ways: {
     "zero-nothing": "Nullpunkt: in ruhender Luft", "span-speed": "Geschwindigkeit: in bekanntem Wind", "span-reference": "Geschwindigkeit: neben einem anderen Sensor",
     "north-bearing": "Norden: mit einer Landmarke", "north-reference": "Norden: neben einer anderen Fahne",
+    "microphone-speed": "Mikrofon: in bekannten Winden", "microphone-reference": "Mikrofon: neben einem anderen Sensor",
   },
-  calibrate_by_command: "Ein Mikrofon wird mit dem Befehl `yuragi calibrate microphone` kalibriert, während der Daemon angehalten ist.",
   cannot_calibrate: "Dieser Sensor kann nicht kalibriert werden.",
   known_speed: "Windgeschwindigkeit (m/s)",
   known_bearing: "Richtung der Landmarke, im Uhrzeigersinn von geographisch Nord (Grad)",

@@ -89,8 +89,8 @@ export const japanese: Texts = {
   calibration_ways: {
     "zero-nothing": "ゼロ点：無風で", "span-speed": "風速：既知の風で", "span-reference": "風速：別のセンサーと並べて",
     "north-bearing": "北：目標物で", "north-reference": "北：別の風向計と並べて",
+    "microphone-speed": "マイク：既知の風で", "microphone-reference": "マイク：別のセンサーと並べて",
   },
-  calibrate_by_command: "マイクの校正は、デーモンを止めてコマンド `yuragi calibrate microphone` で行います。",
   cannot_calibrate: "このセンサーは校正できません。",
   known_speed: "風速（m/s）",
   known_bearing: "目標物の方位、真北から時計回り（度）",
