@@ -32,6 +32,11 @@ constexpr int kSamples = 4;
 constexpr int kGap_px = 8;
 constexpr double kSettling_s = 20.0;
 
+/// From air that hardly moves to a storm.
+constexpr std::array kSheetWinds{Weather{"calm", 0.5}, Weather{"breeze", 4.0}, Weather{"fresh", 9.0},
+                                 Weather{"storm", 16.0}};
+constexpr std::array kStripWinds{kSheetWinds[1], kSheetWinds[3]};
+
 /// The lights that pages are made in: the one that there is without [look], and times of the day by the sun, at the
 /// equinox, two days before a full moon.
 struct PageLight {
@@ -75,7 +80,7 @@ meshes::CameraPlace above(const looks::Stage& stage, double /*aspect*/) {
 }
 
 constexpr std::array kFramings{Framing{"wide", 640, 360, nullptr},  Framing{"portrait", 202, 360, nullptr},
-                               Framing{"6:1", 640, 107, nullptr},   Framing{"near", 640, 360, near},
+                               Framing{"32:9", 640, 180, nullptr},  Framing{"near", 640, 360, near},
                                Framing{"far, 40 m", 640, 360, far}, Framing{"above", 640, 360, above}};
 
 std::vector<std::uint8_t> draw(looks::Stage& stage, const ScenesInWind& scenes, const PageLight& light,
@@ -95,10 +100,10 @@ void draw_pages(looks::Stage& stage, std::string_view scene, std::span<const Pag
   constexpr int kColumn_px = 640 + kGap_px;
   int height_px = kGap_px;
   for (const Framing& framing : kFramings) height_px += framing.height_px + Canvas::kTextHeight_px + kGap_px;
-  std::vector<Canvas> pages(lights.size(), Canvas(static_cast<int>(kWeathers.size()) * kColumn_px, height_px));
+  std::vector<Canvas> pages(lights.size(), Canvas(static_cast<int>(kSheetWinds.size()) * kColumn_px, height_px));
 
   int left_px = 0;
-  for (const Weather& weather : kWeathers) {
+  for (const Weather& weather : kSheetWinds) {
     ScenesInWind scenes(scene, weather.speed_m_s);
     scenes.advance(kSettling_s);
     stage.set_scenes(scenes.models());
@@ -121,17 +126,17 @@ void draw_pages(looks::Stage& stage, std::string_view scene, std::span<const Pag
   }
 }
 
-/// Draws what a scene does in a breeze, from left to right and downward.
-void draw_strip(looks::Stage& stage, std::string_view scene, const std::filesystem::path& folder) {
+/// Draws what a scene does in a wind, from left to right and downward.
+void draw_strip(looks::Stage& stage, std::string_view scene, const Weather& weather,
+                const std::filesystem::path& folder) {
   constexpr int kPictures = 12;
   constexpr int kColumns = 4;
-  constexpr double kStep_s = 1.0 / 6.0;
+  constexpr double kStep_s = 1.0 / 12.0;
   constexpr Framing kFraming{"strip", 480, 270, nullptr};
   constexpr int kRow_px = kFraming.height_px + Canvas::kTextHeight_px + kGap_px;
-  const Weather& breeze = kWeathers[1];
 
   Canvas strip(kColumns * (kFraming.width_px + kGap_px), kPictures / kColumns * kRow_px + kGap_px);
-  ScenesInWind scenes(scene, breeze.speed_m_s);
+  ScenesInWind scenes(scene, weather.speed_m_s);
   scenes.advance(kSettling_s);
   stage.set_scenes(scenes.models());
   stage.set_light(light_of(kLights.front()));
@@ -139,12 +144,12 @@ void draw_strip(looks::Stage& stage, std::string_view scene, const std::filesyst
     const int left_px = i % kColumns * (kFraming.width_px + kGap_px);
     const int top_px = i / kColumns * kRow_px;
     strip.write_text(left_px + kGap_px, top_px + kGap_px,
-                     fmt::format("{}, {} {:g} m/s, {:.2f} s", scene, breeze.name, breeze.speed_m_s, i * kStep_s));
+                     fmt::format("{}, {} {:g} m/s, {:.2f} s", scene, weather.name, weather.speed_m_s, i * kStep_s));
     strip.put(left_px, top_px + Canvas::kTextHeight_px + kGap_px, kFraming.width_px,
               draw(stage, scenes, kLights.front(), kFraming));
     scenes.advance(kStep_s);
   }
-  strip.save(folder / fmt::format("{}-strip.png", scene));
+  strip.save(folder / fmt::format("{}-{}-strip.png", scene, weather.name));
 }
 
 }  // namespace
@@ -173,7 +178,7 @@ int main(int argc, char** argv) {
       std::printf("%s\n", name.c_str());
       std::fflush(stdout);
       draw_pages(stage, name, lights, folder);
-      draw_strip(stage, name, folder);
+      for (const Weather& weather : kStripWinds) draw_strip(stage, name, weather, folder);
     }
     return gl::gl_error_count() == 0 ? 0 : 1;
   } catch (const std::exception& error) {
