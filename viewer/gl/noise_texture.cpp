@@ -20,9 +20,9 @@ float smooth(float t) {
 /// Adds random values on a lattice of cells x cells, smoothly interpolated.
 void add_octave(std::size_t cells, float weight, std::vector<float>& tile) {
   const math::RandomStream random(0, math::stream_id("viewer noise") + cells);
-  const auto lattice = [&](std::size_t x, std::size_t y) {
-    return static_cast<float>(random.uniform((y % cells) * cells + x % cells));
-  };
+  std::vector<float> values(cells * cells);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(random.uniform(i));
+  const auto lattice = [&](std::size_t x, std::size_t y) { return values[y % cells * cells + x % cells]; };
   const std::size_t step = kSize / cells;
   for (std::size_t y = 0; y < kSize; ++y) {
     const float fy = smooth(static_cast<float>(y % step) / static_cast<float>(step));
@@ -54,6 +54,12 @@ std::vector<float> make_tile_values() {
   return tile;
 }
 
+/// Made once: three textures have it.
+const std::vector<float>& tile_values() {
+  static const std::vector<float> tile = make_tile_values();
+  return tile;
+}
+
 std::uint8_t byte_of(float value) {
   return static_cast<std::uint8_t>(255.0F * std::clamp(value, 0.0F, 1.0F));
 }
@@ -61,7 +67,7 @@ std::uint8_t byte_of(float value) {
 /// A tile of texels that `texel_at(tile, x, y)` makes, an array of `kChannels` values from 0 to 1 each.
 template <std::size_t kChannels, class TexelAt>
 Texture made_of_noise(GLint kept_as, GLenum format, TexelAt&& texel_at) {
-  const std::vector<float> tile = make_tile_values();
+  const std::vector<float>& tile = tile_values();
   std::vector<std::uint8_t> texels;
   texels.reserve(kChannels * tile.size());
   for (std::size_t y = 0; y < kSize; ++y) {
