@@ -161,8 +161,8 @@ int main(int argc, char** argv) {
     CLI::App app("Contact sheets of the scenes");
     app.add_option("folder", folder)->required()->check(CLI::ExistingDirectory);
     app.add_option("--scene", names, "only this; can be given again")->check(CLI::IsMember(names));
-    std::vector<std::string> light_names;
-    for (const PageLight& light : kLights) light_names.emplace_back(light.name);
+    std::vector<std::string> light_names(kLights.size());
+    std::ranges::transform(kLights, light_names.begin(), &PageLight::name);
     app.add_option("--light", light_names, "only in this; can be given again")->check(CLI::IsMember(light_names));
     CLI11_PARSE(app, argc, argv);
 

@@ -320,7 +320,7 @@ TEST(KeptValues, AreNamedInWhatAReloadReports) {
 class PageFileOfAnInstallation : public testing::Test {
  protected:
   PageFileOfAnInstallation() {
-    unsetenv("STATE_DIRECTORY");
+    unsetenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): one thread
     write(config_,
           "[[sensor]]\nname = \"mast\"\ndriver = \"nmea\"\ntransport = \"tcp\"\nhost = \"::1\"\nport = 4002\n");
   }
