@@ -204,7 +204,7 @@ class ConfigReader {
           {.sensor = *name, .values = {}, .why_not = "it is of a driver that this version does not have"});
       return;
     }
-    const std::span<const Parameter> keys = page_calibration_keys(*driver);
+    const std::vector<Parameter> keys = page_calibration_keys(*driver);
     const ParameterValues given = read_values(entry, prefix, keys, {"sensor", "replaces"});
     PageCalibration calibration{.sensor = *name, .values = {}, .why_not = {}};
     std::vector<ConfigChange> values;

@@ -460,27 +460,20 @@ Result<std::string, Failure> without_sensor(std::string_view page_text, std::str
                        {fmt::format("the page has set up no sensor \"{}\"", name), FailureKind::kNoInput});
 }
 
-std::span<const Parameter> page_calibration_keys(const drivers::sensor::DriverDescription& driver) {
-  static const std::vector<Parameter> kFactors = [] {
-    std::vector<Parameter> keys;
-    for (const Parameter& key : std::ranges::find(sensor_tables(), kCalibrationTable, &SensorTable::name)->parameters) {
-      if (key.name == "gain" || key.name == "offset" || key.name == "curve" || key.name == "north_offset")
-        keys.push_back(key);
-    }
-    return keys;
-  }();
-  if (driver.calibration != drivers::sensor::CalibrationMeans::kSoundLevel) return kFactors;
-  static const std::vector<Parameter> kWithLevel = [&driver] {  // one driver measures sound
-    std::vector<Parameter> keys = kFactors;
-    for (Parameter key : driver.parameters) {
-      const auto* const level = std::ranges::find(kLevelKeys, key.name, &LevelKey::of_driver);
-      if (level == kLevelKeys.end()) continue;
-      key.name = level->of_page;
+std::vector<Parameter> page_calibration_keys(const drivers::sensor::DriverDescription& driver) {
+  std::vector<Parameter> keys;
+  for (const Parameter& key : std::ranges::find(sensor_tables(), kCalibrationTable, &SensorTable::name)->parameters) {
+    if (key.name == "gain" || key.name == "offset" || key.name == "curve" || key.name == "north_offset")
       keys.push_back(key);
-    }
-    return keys;
-  }();
-  return kWithLevel;
+  }
+  if (driver.calibration != drivers::sensor::CalibrationMeans::kSoundLevel) return keys;
+  for (Parameter key : driver.parameters) {
+    const auto* const level = std::ranges::find(kLevelKeys, key.name, &LevelKey::of_driver);
+    if (level == kLevelKeys.end()) continue;
+    key.name = level->of_page;
+    keys.push_back(key);
+  }
+  return keys;
 }
 
 ConfigChange place_of_page_key(std::string_view name) {

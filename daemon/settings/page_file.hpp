@@ -73,7 +73,7 @@ Result<std::string, Failure> without_sensor(std::string_view page_text, std::str
 /// The values that a calibration on the page may set, by their names there: those of [sensor.calibration] that a
 /// calibration finds and, of a driver whose sensors measure sound, its own gain, exponent and curve as level_gain,
 /// level_exponent and level_curve.
-std::span<const Parameter> page_calibration_keys(const drivers::sensor::DriverDescription& driver);
+std::vector<Parameter> page_calibration_keys(const drivers::sensor::DriverDescription& driver);
 
 /// The place of such a name in a sensor's entry, without a value; and the name of a place. Pure.
 ConfigChange place_of_page_key(std::string_view name);
