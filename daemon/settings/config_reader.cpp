@@ -196,12 +196,13 @@ class ConfigReader {
     const toml::table* const replaced = entry["replaces"].as_table();
     if (!name) mistake_in(entry, prefix, {"sensor", "is missing or not a text"});
     if (replaced == nullptr) mistake_in(entry, prefix, {"replaces", "is missing or not a table"});
-    const std::string driver_name = replaced == nullptr ? "" : (*replaced)["driver"].value_or(std::string());
-    const auto* const driver = drivers::sensor::find_driver(driver_name);
     if (!name || replaced == nullptr) return;
+    const std::string driver_name = (*replaced)["driver"].value_or(std::string());
+    const auto* const driver = drivers::sensor::find_driver(driver_name);
     if (driver == nullptr) {
-      config.page_calibrations.push_back(
-          {.sensor = *name, .values = {}, .why_not = "it is of a driver that this version does not have"});
+      config.page_calibrations.push_back({.sensor = *name,
+                                          .values = "driver = " + toml_value(driver_name),
+                                          .why_not = "it is of a driver that this version does not have"});
       return;
     }
     const std::vector<Parameter> keys = page_calibration_keys(*driver);

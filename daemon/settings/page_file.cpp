@@ -367,8 +367,12 @@ Config with_page_checked(const Config& config, std::string_view page_text, const
   Config both = with_page(config, page_text, source_name);
   std::vector<std::unique_ptr<drivers::sensor::Sensor>> opened;  // together: they may need the same line
   for (const SensorConfig& sensor : both.sensors) {
-    if (std::ranges::find(config.sensors, sensor.name, &SensorConfig::name) == config.sensors.end())
+    const auto known = std::ranges::find(config.sensors, sensor.name, &SensorConfig::name);
+    if (known == config.sensors.end()) {
       opened.push_back(open_sensor(sensor));
+    } else if (known->values.all() != sensor.values.all()) {
+      check_sensor(sensor);  // a microphone's calibration is of its driver
+    }
   }
   refuse_same_device(both.sensors);
   return both;

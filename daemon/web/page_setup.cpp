@@ -185,19 +185,19 @@ http::Response PageSetup::calibrate(const std::string& sensor, const FoundCalibr
   if (!installed) return not_done(installed.error().message);
   const settings::SensorConfig* const known = configured(installed->with_page, sensor);
   if (known == nullptr) return no_sensor(sensor);
+  const std::vector<Parameter> keys = settings::page_calibration_keys(*known->driver);
   std::vector<settings::ConfigChange> changes;
   for (std::size_t i = 0; i < found.after.size(); ++i) {
     const auto& [name, typed] = found.after[i];
-    const auto keys = settings::page_calibration_keys(*known->driver);
     const auto key = std::ranges::find(keys, name, &Parameter::name);
     if (key == keys.end()) return not_done(name + ": is not found by a calibration");
     settings::ConfigChange change = settings::place_of_page_key(name);
     if (typed_value(*key, found.before[i].second) != settings::value_at(*known, change))
       return not_done(fmt::format("{} was changed while {} was calibrated: calibrate it again", name, sensor));
     change.value = typed_value(*key, typed);
-    changes.push_back(std::move(change));
-    if (changes.back().value.index() != key->default_value.index())
+    if (change.value.index() != key->default_value.index())
       return not_done(fmt::format("{}: is \"{}\", which is no number", name, typed));
+    changes.push_back(std::move(change));
   }
   return replace(settings::with_calibration(installed->page_text, installed->configuration, sensor, changes),
                  fmt::format("sensor {} was calibrated", sensor));

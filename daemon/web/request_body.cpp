@@ -281,9 +281,9 @@ Result<CalibrationOrder, Failure> calibration_order_of(std::string_view json) {
   const int known = int{has_bearing} + int{has_speed} + int{has_points} + int{!order.reference.empty()};
   const bool is_zero = order.calibration == "zero" && known == 0;
   const bool is_north = order.calibration == "north" && known == 1 && !has_speed && !has_points;
-  const bool is_span = order.calibration == "span" && known == 1 && !has_bearing;
-  const bool is_microphone = order.calibration == "microphone" && known == 1 && !has_bearing;
-  body.require(is_zero || is_north || is_span || is_microphone,
+  const bool is_of_speed =
+      (order.calibration == "span" || order.calibration == "microphone") && known == 1 && !has_bearing;
+  body.require(is_zero || is_north || is_of_speed,
                "calibration: must be zero, north with bearing_deg or reference, or span or microphone with speed_m_s, "
                "points or reference");
   if (auto mistake = body.mistake()) return std::move(*mistake);

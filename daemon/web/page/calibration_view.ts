@@ -154,6 +154,7 @@ export class CalibrationView {
 
   private show_found(state: CalibrationState | undefined, is_done = false): void {
     const { before, after, effect } = state ?? {};
+    const { way } = this.chosen();
     const can_keep = is_done && !!before && !!after;
     this.found = can_keep ? state : undefined;
     this.keep.disabled = !can_keep;
@@ -163,7 +164,7 @@ export class CalibrationView {
       ...(before && after ? [table(["", texts.value_before, texts.value_after], Object.entries(after).map(([key, value]) => [key, value_text(before[key] ?? ""), value_text(value)]))] : []),
       ...(effect ? [table([texts.sensor_reads, texts.value_before, texts.value_after],
         effect.rows.map(({ indicated, now, then }) => [cell(indicated, effect.indicated_unit), cell(now, effect.unit), cell(then, effect.unit)]))] : []),
-      ...(can_keep && this.chosen().way?.given === "speed" && this.chosen().way?.calibration === "span" ? [element("p", {}, texts.more_winds)] : []));
+      ...(can_keep && way?.calibration === "span" && way.given === "speed" ? [element("p", {}, texts.more_winds)] : []));
   }
 
   private async cancel(): Promise<void> {

@@ -169,7 +169,7 @@ TEST(PageFile, ACalibrationOfAMicrophoneIsOfItsLevel) {
   EXPECT_EQ(set_up.sensors.back().values.number("gain"), 31.0);
   EXPECT_EQ(set_up.sensors.back().values.number("exponent"), 1.6);
 
-  // A cup has no level, whatever a damaged file says.
+  // A cup has no level, whatever is in a damaged file.
   const std::string cup = "[[sensor]]\nname = \"cup\"\ndriver = \"synthetic\"\n";
   std::string damaged = *with_calibration("", parse_config(cup, "a.toml"), "cup", {{{"calibration", "gain", 1.1}}});
   damaged.insert(damaged.find("sensor = "), "level_gain = 3.0\n");

@@ -117,6 +117,19 @@ TEST_F(PageCalibrationTest, ASensorWhoseSettingsWereChangedSinceTheStartIsNotCal
   EXPECT_THAT(refusal->body, HasSubstr("mast was changed since the daemon was started"));
 }
 
+TEST_F(PageCalibrationTest, AMicrophonesOwnCalibrationIsKept_AndRefusedWhereItsDriverWouldRefuseIt) {
+  write(config_, "[http]\ntoken_file = \"token\"\n[[sensor]]\nname = \"mic\"\ndriver = \"microphone\"\n");
+  for (const auto& [key, before, after] :
+       {std::array{"level_curve", "", "loud"}, std::array{"level_exponent", "2", "99"},
+        std::array{"level_gain", "0", "x"}, std::array{"device", "", "other"}, std::array{"exponent", "2", "1.6"}}) {
+    EXPECT_EQ(keep("mic", {.before = {{key, before}}, .after = {{key, after}}}).status, 409U) << key << after;
+  }
+  EXPECT_FALSE(std::filesystem::exists(page_));
+  EXPECT_EQ(keep("mic", {.before = {{"level_curve", ""}}, .after = {{"level_curve", "-62:0 -50:1.2"}}}).status, 200U);
+  EXPECT_EQ(installation().sensors[0].values.text("curve"), "-62:0 -50:1.2");
+  EXPECT_EQ(restarts_, 1);
+}
+
 class CalibrationJobTest : public PageCalibrationTest {
  protected:
   /// What would be called, a word a line.
